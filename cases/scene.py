@@ -1,0 +1,279 @@
+"""A scene: elastic rods, their supports, loads and contact pairs, as plain frozen data.
+
+Units are N, mm, MPa; angles in radians; frames right-handed. Nothing here computes: the rod model and the
+3D reference each derive their own geometry from this data, so that a mistake in one cannot hide in both.
+
+Local frame of a rod (e1, e2, t): t is the tangent of the centre line, e2 the part of `up` normal to t,
+e1 = e2 x t. Section coordinates: x along e1, y along e2, origin at the centroid; s is the arc length from
+the rod's start. Displacements in this frame are (u, v, w).
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+Vector = tuple[float, float, float]
+End = Literal["start", "end"]
+Face = Literal["top", "bottom", "left", "right"]
+
+FACES: tuple[Face, ...] = ("top", "bottom", "left", "right")
+ENDS: tuple[End, ...] = ("start", "end")
+
+
+class SceneError(ValueError):
+    """A scene that cannot be what its author meant, said in one sentence.
+
+    Attributes
+    ----------
+    key : where in the scene, as the case file spells it: "rods.lower.element_borders"
+    found : what was found there
+    remedy : what would be right
+    """
+
+    def __init__(self, key: str, found: str, remedy: str) -> None:
+        super().__init__(f"{key}: found {found}; {remedy}")
+        self.key = key
+        self.found = found
+        self.remedy = remedy
+
+
+def _require(condition: bool, key: str, found: object, remedy: str) -> None:
+    if not condition:
+        raise SceneError(key, str(found), remedy)
+
+
+def _require_positive(value: float, key: str, what: str) -> None:
+    _require(math.isfinite(value) and value > 0.0, key, f"{value:g}", f"{what} must be positive")
+
+
+def _require_finite(vector: Vector, key: str) -> None:
+    ok = len(vector) == 3 and bool(np.all(np.isfinite(vector)))
+    _require(ok, key, vector, "three finite numbers are needed")
+
+
+@dataclass(frozen=True)
+class Material:
+    """Isotropic linear elasticity (Hooke's law in three dimensions).
+
+    Parameters
+    ----------
+    young_modulus : E, MPa
+    poisson_ratio : nu, between -1 and 0.5 (both excluded)
+    """
+
+    young_modulus: float
+    poisson_ratio: float
+
+    def __post_init__(self) -> None:
+        _require_positive(self.young_modulus, "young_modulus", "Young's modulus")
+        ok = -1.0 < self.poisson_ratio < 0.5
+        _require(ok, "poisson_ratio", f"{self.poisson_ratio:g}", "Poisson's ratio lies between -1 and 0.5")
+
+
+@dataclass(frozen=True)
+class Rectangle:
+    """Rectangular cross-section, sides along the local axes.
+
+    Parameters
+    ----------
+    width : b, extent along e1 (coordinate x), mm
+    height : a, extent along e2 (coordinate y), mm
+    """
+
+    width: float
+    height: float
+
+    def __post_init__(self) -> None:
+        _require_positive(self.width, "width", "a width")
+        _require_positive(self.height, "height", "a height")
+
+
+@dataclass(frozen=True)
+class Line:
+    """Straight centre line.
+
+    Parameters
+    ----------
+    start, end : end points in global coordinates (X, Y, Z), mm
+    up : direction whose part normal to the line is e2 (any length)
+    """
+
+    start: Vector
+    end: Vector
+    up: Vector
+
+    def __post_init__(self) -> None:
+        for key, vector in (("start", self.start), ("end", self.end), ("up", self.up)):
+            _require_finite(vector, key)
+        _require(self.length > 0.0, "end", self.end, "the end must differ from the start")
+        normal_part = np.cross(np.subtract(self.end, self.start), self.up)
+        ok = float(np.linalg.norm(normal_part)) > 1e-9 * self.length * float(np.linalg.norm(self.up))
+        _require(ok, "up", self.up, "give a direction that is not along the line")
+
+    @property
+    def length(self) -> float:
+        """Length of the line, mm."""
+        return float(np.linalg.norm(np.subtract(self.end, self.start)))
+
+
+@dataclass(frozen=True)
+class Rod:
+    """An elastic rod.
+
+    Parameters
+    ----------
+    name : how supports, loads and contacts call it
+    element_borders : borders of the rod model's elements, arc length from the rod's start, mm; the first is
+        0, the last the rod's length
+    """
+
+    name: str
+    centre_line: Line
+    section: Rectangle
+    material: Material
+    element_borders: tuple[float, ...]
+
+    def __post_init__(self) -> None:
+        key = f"rods.{self.name}.element_borders"
+        borders = self.element_borders
+        _require(len(borders) >= 2, key, list(borders), "at least the two ends of the rod are needed")
+        rising = all(a < b for a, b in zip(borders, borders[1:], strict=False))
+        _require(rising, key, list(borders), "borders must increase along the rod")
+        length = self.centre_line.length
+        ok = borders[0] == 0.0 and math.isclose(borders[-1], length, rel_tol=1e-9)
+        _require(ok, key, f"{borders[0]:g} .. {borders[-1]:g}", f"borders must run from 0 to {length:g} mm")
+
+    @property
+    def length(self) -> float:
+        """Arc length of the centre line, mm."""
+        return self.centre_line.length
+
+
+@dataclass(frozen=True)
+class Clamp:
+    """All displacements of a rod's end section are zero."""
+
+    rod: str
+    end: End
+
+
+@dataclass(frozen=True)
+class SectionForce:
+    """A force spread evenly over one cross-section.
+
+    Parameters
+    ----------
+    position : arc length from the rod's start, mm
+    force : global components (X, Y, Z), N
+    """
+
+    rod: str
+    position: float
+    force: Vector
+
+
+@dataclass(frozen=True)
+class RodFace:
+    """A lateral face of a rod: top is y = +height/2, bottom y = -height/2, right x = +width/2, left the other."""
+
+    rod: str
+    face: Face
+
+
+@dataclass(frozen=True)
+class ContactPair:
+    """Two faces that may touch without friction; d = u_n(2) - u_n(1) + gap, p_n = -penalty d where d < 0.
+
+    Parameters
+    ----------
+    first, second : the faces; n_c is the outward normal of the first
+    zone : candidate zone, arc length along the first rod (start, end), mm
+    gap : g, initial distance of the faces, mm. It counts as given; the drawn distance is not used.
+    penalty : c_n, N/mm^3
+    """
+
+    name: str
+    first: RodFace
+    second: RodFace
+    zone: tuple[float, float]
+    gap: float
+    penalty: float
+
+
+@dataclass(frozen=True)
+class Scene:
+    """Rods with everything that acts on them.
+
+    Raises
+    ------
+    SceneError
+        if a name is unknown or used twice, or a position lies outside its rod.
+    """
+
+    name: str
+    rods: tuple[Rod, ...]
+    supports: tuple[Clamp, ...]
+    loads: tuple[SectionForce, ...]
+    contacts: tuple[ContactPair, ...]
+
+    def __post_init__(self) -> None:
+        _require(len(self.rods) > 0, "rods", "none", "a scene needs at least one rod")
+        for what, names in (
+            ("rods", [rod.name for rod in self.rods]),
+            ("contacts", [pair.name for pair in self.contacts]),
+        ):
+            twice = next((name for name in names if names.count(name) > 1), None)
+            _require(twice is None, what, f"'{twice}' twice", "give each its own name")
+        for index, support in enumerate(self.supports):
+            self._rod_at(f"supports[{index}].rod", support.rod)
+            _require(support.end in ENDS, f"supports[{index}].end", support.end, "write 'start' or 'end'")
+            twice = support in self.supports[:index]
+            _require(not twice, f"supports[{index}]", f"{support.rod} {support.end} again", "support an end once")
+        for index, load in enumerate(self.loads):
+            rod = self._rod_at(f"loads[{index}].rod", load.rod)
+            _require_finite(load.force, f"loads[{index}].force")
+            ok = 0.0 <= load.position <= rod.length * (1.0 + 1e-9)
+            where = f"loads[{index}].position"
+            _require(ok, where, f"{load.position:g}", f"rod '{rod.name}' runs from 0 to {rod.length:g} mm")
+        for pair in self.contacts:
+            self._check_contact(pair)
+
+    def _rod_at(self, key: str, name: str) -> Rod:
+        rod = next((rod for rod in self.rods if rod.name == name), None)
+        known = ", ".join(f"'{rod.name}'" for rod in self.rods)
+        if rod is None:
+            raise SceneError(key, f"'{name}'", f"the scene's rods are {known}")
+        return rod
+
+    def _check_contact(self, pair: ContactPair) -> None:
+        key = f"contacts.{pair.name}"
+        for side, face in (("first", pair.first), ("second", pair.second)):
+            self._rod_at(f"{key}.{side}.rod", face.rod)
+            _require(face.face in FACES, f"{key}.{side}.face", f"'{face.face}'", f"write one of {', '.join(FACES)}")
+        different = pair.first.rod != pair.second.rod
+        _require(different, f"{key}.second.rod", f"'{pair.second.rod}'", "a pair needs two different rods")
+        rod = self.rod(pair.first.rod)
+        start, end = pair.zone
+        ok = 0.0 <= start < end <= rod.length * (1.0 + 1e-9)
+        remedy = f"the zone must rise and lie on rod '{rod.name}', which runs from 0 to {rod.length:g} mm"
+        _require(ok, f"{key}.zone", f"{start:g} .. {end:g}", remedy)
+        _require(math.isfinite(pair.gap), f"{key}.gap", f"{pair.gap:g}", "a finite length is needed")
+        _require_positive(pair.penalty, f"{key}.penalty", "a penalty")
+
+    def rod(self, name: str) -> Rod:
+        """The rod called `name`; KeyError if there is none."""
+        for rod in self.rods:
+            if rod.name == name:
+                return rod
+        raise KeyError(name)
+
+    def contact(self, name: str) -> ContactPair:
+        """The contact pair called `name`; KeyError if there is none."""
+        for pair in self.contacts:
+            if pair.name == name:
+                return pair
+        raise KeyError(name)
