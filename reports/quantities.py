@@ -1,0 +1,352 @@
+"""The compared quantities, each defined once and evaluated the same way for both solvers.
+
+Everything here asks a `reports.solution.Solution` and knows nothing of how it was computed. `DEFINITIONS`
+gives every quantity its unit and its definition in words; the page and the JSON Schema take them from there.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from reports.contact_edges import contact_stretches
+from reports.equilibrium import equilibrium_residual, equilibrium_resultants
+from reports.geometry import centre_line_points, contact_limits, pair_axis
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from cases.scene import Clamp, ContactPair, End, Rod, Scene
+    from reports.solution import Array, ContactProfile, Solution
+
+AXES = ("X", "Y", "Z")
+
+
+@dataclass(frozen=True)
+class Definition:
+    """What a quantity is: its title, its unit ('' for none) and its definition in words."""
+
+    title: str
+    unit: str
+    text: str
+
+
+DEFINITIONS: Mapping[str, Definition] = {
+    "contact_force": Definition(
+        "Contact force",
+        "N",
+        "Magnitude of the resultant of the contact pressure on the second rod of the pair.",
+    ),
+    "contact_centre": Definition(
+        "Centre of contact",
+        "mm",
+        "Mean position of the contact force, weighted with the force, along the global axis to which the "
+        "first rod is most nearly parallel.",
+    ),
+    "contact_edges": Definition(
+        "Contact edges, middle",
+        "mm",
+        "Start and end of each stretch in contact in the middle of the width, along the global axis to "
+        "which the first rod is most nearly parallel. Near an edge the pressure goes like the square root "
+        "of the distance, so the edge is the zero of the straight line through the squared pressure of the "
+        "last two stations in contact, at most the next open station; where contact runs to the end of the "
+        "zone or of a rod, it is that end.",
+    ),
+    "contact_edges_outer": Definition(
+        "Contact edges, outer",
+        "mm",
+        "Start and end of each stretch in contact at the outer border of the width, found as in the middle.",
+    ),
+    "penetration": Definition("Penetration", "mm", "Largest overlap of the faces at any contact point."),
+    "pressure_middle": Definition("Pressure, middle", "MPa", "Contact pressure in the middle of the width."),
+    "pressure_mean": Definition("Pressure, mean", "MPa", "Contact pressure averaged over the width."),
+    "pressure_outer": Definition(
+        "Pressure, outer", "MPa", "Contact pressure at the outer border of the width."
+    ),
+    "deflection": Definition(
+        "Deflection", "mm", "Displacement of the centre line (x = y = 0) at the stations, global axes."
+    ),
+    "bending_moment": Definition(
+        "Bending moment",
+        "N mm",
+        "M1 = integral of sigma_s y over the section, from equilibrium of loads and contact forces (and of "
+        "the reaction, where a rod is held at both ends).",
+    ),
+    "bending_moment_stress": Definition(
+        "Bending moment from stress",
+        "N mm",
+        "M1 = integral of sigma_s y over the section, of the computed stress.",
+    ),
+    "end_moment_equilibrium": Definition(
+        "Clamp moment, equilibrium",
+        "N mm",
+        "M1 in the clamped section from equilibrium; where both ends are clamped, the larger of the two.",
+    ),
+    "end_moment_stress": Definition(
+        "Clamp moment, stress",
+        "N mm",
+        "M1 in the same clamped section, integrated from the computed stress there.",
+    ),
+    "max_bending_stress": Definition(
+        "Maximum bending stress",
+        "MPa",
+        "|M1| / W in the clamped section, M1 integrated from the computed stress there, "
+        "W = width height^2 / 6. This is the paper's definition; the statically exact moment is several per "
+        "cent smaller.",
+    ),
+    "stress_s": Definition("Stress along the rod", "MPa", "sigma_s at a stated point (x, y, s) of a rod."),
+    "strain_energy": Definition(
+        "Strain energy", "N mm", "Elastic energy of all rods, without that of the contact penalty."
+    ),
+    "equilibrium_residual": Definition(
+        "Equilibrium residual",
+        "",
+        "Largest unbalanced force, or moment about a rod's start over its length, of the loads, contact "
+        "forces and reactions on any rod, relative to the sum of the loads' magnitudes.",
+    ),
+    "stress_residual": Definition(
+        "Moment residual",
+        "",
+        "Largest difference of the bending moment from equilibrium and from stress over all stations of a "
+        "rod, relative to the largest bending moment of the rod.",
+    ),
+}
+
+
+@dataclass(frozen=True)
+class PressureProfile:
+    """Contact pressure along the zone.
+
+    Attributes
+    ----------
+    position : coordinate along the pair's axis, mm, shape (n,)
+    middle, mean, outer : pressure, MPa, shape (n,)
+    """
+
+    position: Array
+    middle: Array
+    mean: Array
+    outer: Array
+
+
+@dataclass(frozen=True)
+class ContactQuantities:
+    """What one contact pair transmits.
+
+    Attributes
+    ----------
+    axis : index of the global axis along which centre, edges and profile are given
+    resultant : contact force on the second rod, global components, N, shape (3,)
+    force : its magnitude, N
+    centre : where it acts along the axis, mm; None without contact
+    edges, edges_outer : (start, end) of each stretch in contact, ascending, mm
+    penetration : largest overlap, mm
+    """
+
+    pair: str
+    axis: int
+    resultant: Array
+    force: float
+    centre: float | None
+    edges: tuple[tuple[float, float], ...]
+    edges_outer: tuple[tuple[float, float], ...]
+    penetration: float
+    pressure: PressureProfile
+
+
+@dataclass(frozen=True)
+class RodQuantities:
+    """Deflection and resultants along one rod.
+
+    Attributes
+    ----------
+    station : arc length from the rod's start, mm, shape (n,)
+    position : undeformed centre line, global, mm, shape (3, n)
+    displacement : of the centre line, global components, mm, shape (3, n)
+    equilibrium, stress : N, Q1, Q2 (N), M1, M2, T (N mm) from equilibrium and from stress, shape (6, n)
+    end_moment_equilibrium, end_moment_stress : M1 at the clamp, N mm; None for a rod without a clamp
+    max_bending_stress : |end_moment_stress| / W, MPa; None for a rod without a clamp
+    """
+
+    rod: str
+    station: Array
+    position: Array
+    displacement: Array
+    equilibrium: Array
+    stress: Array
+    end_moment_equilibrium: float | None
+    end_moment_stress: float | None
+    max_bending_stress: float | None
+
+    @property
+    def moment(self) -> Array:
+        """Bending moment M1 from equilibrium, N mm, shape (n,)."""
+        moment: Array = self.equilibrium[3]
+        return moment
+
+
+@dataclass(frozen=True)
+class Quantities:
+    """All compared quantities of one solution.
+
+    Attributes
+    ----------
+    outcome : the solver's: 'converged', or why not
+    reactions : force (N) and moment (N mm) of each support on its rod, global, shape (6,) each
+    equilibrium_residual : see `DEFINITIONS`
+    setup_seconds, solve_seconds : the solver's own, disjoint
+    """
+
+    outcome: str
+    contacts: tuple[ContactQuantities, ...]
+    rods: tuple[RodQuantities, ...]
+    reactions: Mapping[tuple[str, End], Array]
+    strain_energy: float
+    equilibrium_residual: float
+    unknowns: int
+    contact_solutions: int
+    setup_seconds: float
+    solve_seconds: float
+
+    @property
+    def converged(self) -> bool:
+        """Whether the solver says it converged."""
+        return self.outcome == "converged"
+
+    def contact(self, pair: str) -> ContactQuantities:
+        """The contact quantities of `pair`; KeyError if there is none."""
+        for contact in self.contacts:
+            if contact.pair == pair:
+                return contact
+        raise KeyError(pair)
+
+    def rod(self, name: str) -> RodQuantities:
+        """The quantities of the rod `name`; KeyError if there is none."""
+        for rod in self.rods:
+            if rod.rod == name:
+                return rod
+        raise KeyError(name)
+
+
+def evaluate(solution: Solution, stations: Mapping[str, Array] | None = None) -> Quantities:
+    """All quantities of a solution.
+
+    Parameters
+    ----------
+    stations : further stations per rod, arc length, mm, added to `default_stations`
+    """
+    scene = solution.scene
+    extra = stations or {}
+    reactions = {(clamp.rod, clamp.end): solution.reaction(clamp.rod, clamp.end) for clamp in scene.supports}
+    rods = []
+    for rod in scene.rods:
+        station = merged_stations(rod, extra.get(rod.name, np.empty(0)))
+        rods.append(rod_quantities(solution, rod, station))
+    return Quantities(
+        outcome=solution.outcome,
+        contacts=tuple(contact_quantities(solution, pair) for pair in scene.contacts),
+        rods=tuple(rods),
+        reactions=reactions,
+        strain_energy=float(solution.strain_energy),
+        equilibrium_residual=equilibrium_residual(solution),
+        unknowns=solution.cost.unknowns,
+        contact_solutions=solution.contact_solutions,
+        setup_seconds=solution.cost.setup_seconds,
+        solve_seconds=solution.cost.solve_seconds,
+    )
+
+
+def default_stations(rod: Rod) -> Array:
+    """61 evenly spaced stations, both ends among them, and the element borders, mm, ascending."""
+    return merged_stations(rod, np.empty(0))
+
+
+def merged_stations(rod: Rod, extra: Array) -> Array:
+    """`default_stations` and further ones, those closer than 1e-9 of the length merged."""
+    even = np.linspace(0.0, rod.length, 61)
+    station = np.sort(np.concatenate([even, rod.element_borders, extra]))
+    station = np.clip(station, 0.0, rod.length)
+    keep = np.concatenate([[True], np.diff(station) > 1e-9 * rod.length])
+    merged: Array = station[keep]
+    return merged
+
+
+def contact_quantities(solution: Solution, pair: ContactPair) -> ContactQuantities:
+    """Resultant, centre, edges, penetration and pressure of one pair."""
+    scene = solution.scene
+    axis = pair_axis(scene, pair)
+    points = solution.contact_points(pair.name)
+    resultant = np.asarray(points.normal @ points.force)
+    total = float(points.force.sum())
+    profile = solution.contact_profile(pair.name)
+    return ContactQuantities(
+        pair=pair.name,
+        axis=axis,
+        resultant=resultant,
+        force=float(np.linalg.norm(resultant)),
+        centre=float(points.position[axis] @ points.force) / total if total > 0.0 else None,
+        edges=_edges(scene, pair, profile, profile.middle),
+        edges_outer=_edges(scene, pair, profile, profile.outer),
+        penetration=float(max(0.0, -points.gap.min(initial=0.0))),
+        pressure=PressureProfile(profile.position[axis], profile.middle, profile.mean, profile.outer),
+    )
+
+
+def _edges(
+    scene: Scene, pair: ContactPair, profile: ContactProfile, pressure: Array
+) -> tuple[tuple[float, float], ...]:
+    """Stretches in contact, in the global coordinate of the pair's axis."""
+    first = scene.rod(pair.first.rod)
+    stretches = contact_stretches(profile.station, pressure, contact_limits(scene, pair))
+    axis = pair_axis(scene, pair)
+    ends = [centre_line_points(first, np.array(stretch))[axis] for stretch in stretches]
+    return tuple(sorted((float(min(pair_ends)), float(max(pair_ends))) for pair_ends in ends))
+
+
+def rod_quantities(solution: Solution, rod: Rod, station: Array) -> RodQuantities:
+    """Deflection and resultants of one rod at the stations (arc length, mm, shape (n,))."""
+    clamps = [support for support in solution.scene.supports if support.rod == rod.name]
+    end_moment_equilibrium = end_moment_stress = max_bending_stress = None
+    if clamps:
+        ends = np.array([clamp_station(rod, clamp) for clamp in clamps])
+        moments = equilibrium_resultants(solution, rod, ends)[3]
+        largest = int(np.argmax(np.abs(moments)))
+        end_moment_equilibrium = float(moments[largest])
+        end_moment_stress = float(solution.section_resultants(rod.name, ends[largest : largest + 1])[3, 0])
+        max_bending_stress = abs(end_moment_stress) / section_modulus(rod)
+    return RodQuantities(
+        rod=rod.name,
+        station=station,
+        position=centre_line_points(rod, station),
+        displacement=solution.displacement(rod.name, station),
+        equilibrium=equilibrium_resultants(solution, rod, station),
+        stress=solution.section_resultants(rod.name, station),
+        end_moment_equilibrium=end_moment_equilibrium,
+        end_moment_stress=end_moment_stress,
+        max_bending_stress=max_bending_stress,
+    )
+
+
+def clamp_station(rod: Rod, clamp: Clamp) -> float:
+    """Arc length of a clamped end, mm."""
+    return 0.0 if clamp.end == "start" else rod.length
+
+
+def section_modulus(rod: Rod) -> float:
+    """W = width height^2 / 6, for bending about e1, mm^3."""
+    return rod.section.width * rod.section.height**2 / 6.0
+
+
+def stress_residual(rod: RodQuantities) -> float:
+    """Largest difference of M1 from equilibrium and from stress, relative to the largest M1 of the rod."""
+    largest = float(np.abs(rod.moment).max())
+    difference = float(np.abs(rod.stress[3] - rod.moment).max())
+    return difference / largest if largest > 0.0 else difference
+
+
+def stress_s(solution: Solution, rod: str, points: Array) -> Array:
+    """sigma_s at points (x, y, s) of a rod, MPa, shape (n,); points has shape (3, n), mm."""
+    stress: Array = solution.stress(rod, points)[2]
+    return stress
