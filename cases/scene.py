@@ -232,7 +232,9 @@ class Scene:
             self._rod_at(f"supports[{index}].rod", support.rod)
             _require(support.end in ENDS, f"supports[{index}].end", support.end, "write 'start' or 'end'")
             twice = support in self.supports[:index]
-            _require(not twice, f"supports[{index}]", f"{support.rod} {support.end} again", "support an end once")
+            _require(
+                not twice, f"supports[{index}]", f"{support.rod} {support.end} again", "support an end once"
+            )
         for index, load in enumerate(self.loads):
             rod = self._rod_at(f"loads[{index}].rod", load.rod)
             _require_finite(load.force, f"loads[{index}].force")
@@ -253,7 +255,9 @@ class Scene:
         key = f"contacts.{pair.name}"
         for side, face in (("first", pair.first), ("second", pair.second)):
             self._rod_at(f"{key}.{side}.rod", face.rod)
-            _require(face.face in FACES, f"{key}.{side}.face", f"'{face.face}'", f"write one of {', '.join(FACES)}")
+            _require(
+                face.face in FACES, f"{key}.{side}.face", f"'{face.face}'", f"write one of {', '.join(FACES)}"
+            )
         different = pair.first.rod != pair.second.rod
         _require(different, f"{key}.second.rod", f"'{pair.second.rod}'", "a pair needs two different rods")
         rod = self.rod(pair.first.rod)

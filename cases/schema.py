@@ -1,0 +1,241 @@
+"""What a case file may contain: the keys, their meaning and their units.
+
+These models check the form of a file, key by key. What the keys say together (names that exist, positions on
+rods, faces that face each other) is for `cases.scene` and `cases.loader`.
+"""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Literal
+
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, StrictInt, StrictStr, WithJsonSchema
+
+from cases.case import Quantity
+from cases.scene import End, Face
+from cases.units import EXAMPLES, QUANTITY_PATTERN, Unit, UnitError, to_unit
+
+_FORMS = [{"type": "number"}, {"type": "string", "pattern": QUANTITY_PATTERN}]
+
+
+def _with_unit(unit: Unit) -> tuple[BeforeValidator, WithJsonSchema]:
+    """Validation and JSON Schema of a number with a unit."""
+    what, example = EXAMPLES[unit]
+    schema = {"anyOf": _FORMS, "description": f"{what}, such as {example}"}
+    return BeforeValidator(lambda value: to_unit(value, unit)), WithJsonSchema(schema)
+
+
+def _plain_number(value: object) -> float:
+    if isinstance(value, bool) or not isinstance(value, (int, float)) or not abs(value) < float("inf"):
+        raise UnitError("a number without unit is needed, such as 0.3")
+    return float(value)
+
+
+def _tolerance(value: object) -> str:
+    """Keep a tolerance as text until its quantity is known, but see that it is a number with a unit."""
+    for unit in ("%", "mm"):
+        try:
+            to_unit(value, unit)
+        except UnitError:
+            continue
+        if isinstance(value, str):
+            return value
+    raise UnitError('write a tolerance with its unit, relative as in "0.1 %" or absolute as in "1 mm"')
+
+
+Length = Annotated[float, *_with_unit("mm")]
+Force = Annotated[float, *_with_unit("N")]
+Stress = Annotated[float, *_with_unit("MPa")]
+PenaltyUnit = Annotated[float, *_with_unit("N/mm^3")]
+Number = Annotated[float, BeforeValidator(_plain_number), WithJsonSchema({"type": "number"})]
+Tolerance = Annotated[
+    str, BeforeValidator(_tolerance), WithJsonSchema({"type": "string", "pattern": QUANTITY_PATTERN})
+]
+Name = Annotated[str, Field(strict=True, pattern=r"^[A-Za-z0-9_][A-Za-z0-9_ .-]*$")]
+Text = Annotated[StrictStr, Field(min_length=1)]
+# The unit of a published value follows from its quantity, so the loader converts it.
+Value = Annotated[
+    Any, WithJsonSchema({"anyOf": [*_FORMS, {"type": "array", "items": {"anyOf": _FORMS}, "minItems": 1}]})
+]
+
+
+class _Table(BaseModel):
+    """A table of the file: no other keys than these."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, use_attribute_docstrings=True)
+
+
+class MaterialTable(_Table):
+    """A linear elastic, isotropic material."""
+
+    young_modulus: Stress
+    """Young's modulus E, a stress, such as "200 GPa"; positive."""
+    poisson_ratio: Number
+    """Poisson's ratio, between -1 and 0.5."""
+
+
+class SectionTable(_Table):
+    """A cross-section, in coordinates x (across) and y (towards the centre line's `up`)."""
+
+    shape: Literal["rectangle"]
+    """Shape of the section: "rectangle"."""
+    width: Length
+    """Extent along x, a length; positive."""
+    height: Length
+    """Extent along y, a length; positive."""
+
+
+class CentreLineTable(_Table):
+    """The line through the centres of a rod's sections, in global axes X, Y, Z."""
+
+    shape: Literal["line"]
+    """Shape of the centre line: "line"."""
+    start: tuple[Length, Length, Length]
+    """Where the rod starts, three lengths [X, Y, Z], such as [0, 0, 0]."""
+    end: tuple[Length, Length, Length]
+    """Where the rod ends, three lengths [X, Y, Z], such as ["300 mm", 0, 0]."""
+    up: tuple[Number, Number, Number]
+    """Direction of the section's y axis, three numbers [X, Y, Z], such as [0, 1, 0]; its part along the line is
+    taken off."""
+
+
+class RodTable(_Table):
+    """An elastic rod; supports, loads and contacts call it by the name of its table."""
+
+    section: Text
+    """Name of one of the [sections]."""
+    material: Text
+    """Name of one of the [materials]."""
+    element_borders: tuple[Length, ...]
+    """Borders of the rod model's elements, a list of rising lengths from 0 to the rod's length, measured along the
+    rod from its start; borders inside a contact zone move to the edges of the contact."""
+    centre_line: CentreLineTable
+    """The rod's centre line, as table [rods.NAME.centre_line]."""
+
+
+class SupportTable(_Table):
+    """A support; a "clamp" holds all displacements of an end section."""
+
+    kind: Literal["clamp"]
+    """Kind of support: "clamp"."""
+    rod: Text
+    """Name of one of the [rods]."""
+    end: End
+    """Which end of the rod: "start" or "end"."""
+
+
+class LoadTable(_Table):
+    """A load; a "section force" is spread evenly over one cross-section."""
+
+    kind: Literal["section force"]
+    """Kind of load: "section force"."""
+    rod: Text
+    """Name of one of the [rods]."""
+    position: Length
+    """Where the section is, a length along the rod from its start."""
+    force: tuple[Force, Force, Force]
+    """The force, three components [X, Y, Z] in global axes, such as [0, "-1 kN", 0]."""
+
+
+class RodFaceTable(_Table):
+    """A lateral face of a rod."""
+
+    rod: Text
+    """Name of one of the [rods]."""
+    face: Face
+    """Which face: "top" (y = +height/2), "bottom", "right" (x = +width/2) or "left"."""
+
+
+class ContactTable(_Table):
+    """Two faces that may touch without friction."""
+
+    first: RodFaceTable
+    """The first face, such as { rod = "lower", face = "top" }."""
+    second: RodFaceTable
+    """The second face, such as { rod = "upper", face = "bottom" }."""
+    zone: tuple[Length, Length]
+    """Where the faces may touch: two rising lengths [from, to] along the first rod from its start."""
+    gap: Length
+    """Distance of the faces before loading, a length; it counts as given, whatever distance is drawn."""
+    penalty: PenaltyUnit
+    """Pressure per penetration, a stress per length, such as "1e6 N/mm^3"; positive."""
+
+
+class RodModelTable(_Table):
+    """How the rod model solves the case."""
+
+    level: Annotated[StrictInt, Field(ge=1, le=12)]
+    """Level k of the model h_k, a whole number from 1 to 12: degree of the polynomials over the section."""
+    order: Annotated[StrictInt, Field(ge=2, le=20)]
+    """Order p of the shape functions along the rod, a whole number from 2 to 20."""
+
+
+class CompareTable(_Table):
+    """A quantity by which the rod model is held against the 3D reference."""
+
+    quantity: Quantity
+    """Name of the quantity; not max_bending_stress, which does not converge in 3D."""
+    rod: Text | None = None
+    """Name of one of the [rods], for a quantity of a rod."""
+    contact: Text | None = None
+    """Name of one of the [contacts], for a quantity of a contact pair."""
+    point: tuple[Length, Length, Length] | None = None
+    """Point of a rod, three lengths [x, y, s]: x and y in the section, s along the rod; for stress_s."""
+    tolerance: Tolerance
+    """Largest difference that passes, with its unit: "0.3 %" of the value (of a curve's largest value), or
+    "1 mm" for positions."""
+
+
+class PublishedTable(_Table):
+    """A value printed in a source, as printed."""
+
+    quantity: Quantity
+    """Name of the quantity; one that a number or a list of numbers states, so no curve and no stress_s."""
+    rod: Text | None = None
+    """Name of one of the [rods], for a quantity of a rod."""
+    contact: Text | None = None
+    """Name of one of the [contacts], for a quantity of a contact pair."""
+    value: Value
+    """The value, such as "117.15 MPa"; for contact edges start and end of each stretch in contact, such as
+    ["200 mm", "221.71 mm"], as global coordinates."""
+    tolerance: Tolerance
+    """How far from it a result may be, with its unit: "0.1 %" or "1 mm"."""
+    source: Text
+    """Where the value is printed."""
+
+
+class CaseFile(_Table):
+    """A case of rodcheck: rods, what acts on them, and what their solutions are held against.
+
+    A number with a unit is a string, such as "200 GPa"; a bare number is in mm, N or MPa. A key [rods.NAME] is a
+    table of its own for every name.
+    """
+
+    title: Text
+    """One line that says what the case is."""
+    description: StrictStr = ""
+    """A paragraph about the case."""
+    independent: Text | None = None
+    """Name of a file in cases/truth with 3D values made outside this project."""
+    materials: dict[Name, MaterialTable]
+    """The materials, one table [materials.NAME] each."""
+    sections: dict[Name, SectionTable]
+    """The cross-sections, one table [sections.NAME] each."""
+    rods: dict[Name, RodTable]
+    """The rods, one table [rods.NAME] each."""
+    supports: tuple[SupportTable, ...]
+    """The supports, one [[supports]] each."""
+    loads: tuple[LoadTable, ...] = ()
+    """The loads, one [[loads]] each."""
+    contacts: dict[Name, ContactTable] = {}
+    """The contact pairs, one table [contacts.NAME] each."""
+    rod_model: RodModelTable
+    """Settings of the rod model."""
+    compare: tuple[CompareTable, ...] = ()
+    """What is compared, one [[compare]] each."""
+    published: tuple[PublishedTable, ...] = ()
+    """Published values, one [[published]] each."""
+
+
+def case_schema() -> dict[str, Any]:
+    """JSON Schema of a case file as a dictionary of its TOML content."""
+    return {"$schema": "https://json-schema.org/draft/2020-12/schema", **CaseFile.model_json_schema()}
