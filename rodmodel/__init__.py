@@ -1,0 +1,39 @@
+"""Hierarchic rod model h1, h2, ...: p-version rods in frictionless penalty contact.
+
+    import rodmodel as rm
+    solution = rm.solve(rm.Scene(...), level=5, order=6)
+
+Needs numpy, scipy and the plain data of `cases.scene`, whose names it re-exports.
+"""
+
+from cases.scene import (
+    Clamp,
+    ContactPair,
+    Line,
+    Material,
+    Rectangle,
+    Rod,
+    RodFace,
+    Scene,
+    SceneError,
+    SectionForce,
+)
+from rodmodel.solution import ContactPoints, Cost, Solution
+from rodmodel.solve import solve
+
+__all__ = [
+    "Clamp",
+    "ContactPair",
+    "ContactPoints",
+    "Cost",
+    "Line",
+    "Material",
+    "Rectangle",
+    "Rod",
+    "RodFace",
+    "Scene",
+    "SceneError",
+    "SectionForce",
+    "Solution",
+    "solve",
+]

@@ -1,0 +1,200 @@
+"""One rod ready to be loaded: its condensed elements, its factorised chain, and linear functionals on it.
+
+A functional (the normal displacement of a contact point, a load) is condensed as the elements are: a part on the
+nodes, and for the elements it lies in, a part on their bubbles. Compliances are inner products of such halves.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import solve_triangular
+
+from cases.scene import Rectangle, Rod, Scene, SectionForce
+from rodmodel.axial import shape_functions
+from rodmodel.centre_line import frame
+from rodmodel.chain import Chain
+from rodmodel.section import Fields, SectionStiffness, section_functions, section_stiffness
+from rodmodel.stiffness import Element, condensed_element
+
+Array = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+
+
+@dataclass(eq=False)
+class ElementStore:
+    """Elements made so far, so that none is made twice: neighbours, rods and border positions share them.
+
+    Parameters
+    ----------
+    order : polynomial order p along the rods
+    """
+
+    order: int
+    _sections: dict[tuple[Rectangle, float, Fields], SectionStiffness] = field(default_factory=dict)
+    _elements: dict[tuple[Rectangle, float, Fields, float], Element] = field(default_factory=dict)
+
+    def section(self, rod: Rod, fields: Fields) -> SectionStiffness:
+        """S_ab of the rod for unit Young's modulus."""
+        key = (rod.section, rod.material.poisson_ratio, fields)
+        if key not in self._sections:
+            self._sections[key] = section_stiffness(
+                rod.section, replace(rod.material, young_modulus=1.0), fields
+            )
+        return self._sections[key]
+
+    def element(self, rod: Rod, fields: Fields, length: float) -> Element:
+        """Condensed element of the rod for unit Young's modulus; `length` in mm."""
+        # Lengths that differ only by the round-off of the borders they come from are one length.
+        key = (rod.section, rod.material.poisson_ratio, fields, float(f"{length:.11e}"))
+        if key not in self._elements:
+            self._elements[key] = condensed_element(length, self.order, self.section(rod, fields))
+        return self._elements[key]
+
+
+@dataclass(frozen=True, eq=False)
+class AssembledRod:
+    """A rod with its elements and factorised stiffness.
+
+    Attributes
+    ----------
+    borders : element borders, arc length, mm, shape (n_elements + 1,)
+    """
+
+    rod: Rod
+    fields: Fields
+    order: int
+    borders: Array
+    elements: tuple[Element, ...]
+    chain: Chain
+
+    @property
+    def unknowns(self) -> int:
+        """Degrees of freedom that are not held: free nodes and all bubbles, times the fields."""
+        free_nodes = self.chain.past_free - self.chain.first_free
+        return self.fields.count * (free_nodes + len(self.elements) * (self.order - 1))
+
+    def locate(self, station: Array) -> tuple[IntArray, Array]:
+        """Element index and xi of stations (mm); a station on a border belongs to the element before it."""
+        index = np.clip(np.searchsorted(self.borders, station, side="left") - 1, 0, len(self.elements) - 1)
+        left, right = self.borders[index], self.borders[index + 1]
+        return index, (2.0 * station - left - right) / (right - left)
+
+
+def assembled_rod(
+    scene: Scene, rod: Rod, fields: Fields, borders: Array, store: ElementStore
+) -> AssembledRod:
+    """Make (or fetch from `store`) the elements between `borders` and factorise the chain."""
+    clamped = {support.end for support in scene.supports if support.rod == rod.name}
+    elements = tuple(store.element(rod, fields, float(length)) for length in np.diff(borders))
+    chain = Chain(elements, rod.material.young_modulus, "start" in clamped, "end" in clamped)
+    return AssembledRod(rod, fields, store.order, borders, elements, chain)
+
+
+@dataclass(frozen=True, eq=False)
+class Functionals:
+    """m linear functionals on the degrees of freedom of an assembled rod, condensed and half solved.
+
+    Attributes
+    ----------
+    nodal : L^-1 (c_n - K_nb K_bb^-1 c_b) with the chain's factor L, shape (n_nodes, n_fields, m)
+    ends : the condensed functionals on the first and the last node, held or not, shape (2, n_fields, m)
+    bubbles : for each element with bubbles involved: its index, the functionals' numbers, L_bb^-1 c_b of shape
+        (n_bubbles, how many)
+    """
+
+    nodal: Array
+    ends: Array
+    bubbles: tuple[tuple[int, IntArray, Array], ...]
+
+
+def functionals_at(assembled: AssembledRod, station: Array, direction: Array) -> Functionals:
+    """Displacement at points of the rod, one functional a point.
+
+    station : arc length of the points, mm, shape (m,)
+    direction : value of every field at the points, in the direction asked for, shape (n_fields, m)
+    """
+    n_nodes, n_fields = len(assembled.borders), assembled.fields.count
+    index, xi = assembled.locate(station)
+    along = shape_functions(assembled.order, xi)
+    nodal = np.zeros((n_nodes, n_fields, len(station)))
+    bubbles = []
+    for element_index in np.unique(index):
+        element = assembled.elements[element_index]
+        members = np.flatnonzero(index == element_index)
+        part = along[:, None, members] * direction[None, :, members]
+        # Shape functions vanish at the nodes only up to round-off: points on a node need no bubbles.
+        inner = np.flatnonzero(np.abs(xi[members]) < 1.0 - 1e-12)
+        condensed = part[:2]
+        if len(inner) == 0:
+            nodal[element_index : element_index + 2, :, members] += condensed
+            continue
+        right = part[2:, :, inner].reshape(len(element.bubble_factor), -1)
+        half = solve_triangular(element.bubble_factor, right, lower=True, check_finite=False)
+        condensed[:, :, inner] -= (element.half_coupling.T @ half).reshape(2, n_fields, -1)
+        nodal[element_index : element_index + 2, :, members] += condensed
+        bubbles.append(
+            (int(element_index), members[inner], half / np.sqrt(assembled.rod.material.young_modulus))
+        )
+    return Functionals(assembled.chain.half_solve(nodal), nodal[[0, -1]], tuple(bubbles))
+
+
+def section_loads(assembled: AssembledRod, loads: Sequence[SectionForce]) -> Functionals:
+    """Forces spread evenly over sections, as one functional of shape m = 1.
+
+    An even spread works on the mean displacement alone, which is the coefficient of the constant function.
+    """
+    mine = [load for load in loads if load.rod == assembled.rod.name]
+    station = np.array([load.position for load in mine])
+    direction = np.zeros((assembled.fields.count, len(mine)))
+    for number, load in enumerate(mine):
+        for component, force in enumerate(frame(assembled.rod.centre_line) @ load.force):
+            index = assembled.fields.index(component, 0, 0)
+            if index is not None:
+                direction[index, number] = force
+    single = functionals_at(assembled, station, direction)
+    return combined(single, np.ones((len(mine), 1)))
+
+
+def combined(functionals: Functionals, weights: Array) -> Functionals:
+    """Linear combinations of functionals; weights of shape (m, m_new)."""
+    n_new = weights.shape[1]
+    bubbles = tuple(
+        (index, np.arange(n_new), half @ weights[members]) for index, members, half in functionals.bubbles
+    )
+    return Functionals(functionals.nodal @ weights, functionals.ends @ weights, bubbles)
+
+
+def added(first: Functionals, second: Functionals) -> Functionals:
+    """Sums of functionals, one by one; both of the same m."""
+    return Functionals(first.nodal + second.nodal, first.ends + second.ends, first.bubbles + second.bubbles)
+
+
+def compliance(first: Functionals, second: Functionals) -> Array:
+    """first^T K^-1 second, shape (m_first, m_second): displacements of the first under the second as loads."""
+    result = first.nodal.reshape(-1, first.nodal.shape[2]).T @ second.nodal.reshape(-1, second.nodal.shape[2])
+    for index, members, half in first.bubbles:
+        for other_index, other_members, other_half in second.bubbles:
+            if index == other_index:
+                result[np.ix_(members, other_members)] += half.T @ other_half
+    return np.asarray(result)
+
+
+def coefficients(assembled: AssembledRod, load: Functionals) -> Array:
+    """Degrees of freedom under a load (m = 1), element by element, shape (n_elements, order + 1, n_fields)."""
+    n_elements, n_fields = len(assembled.elements), assembled.fields.count
+    nodes = assembled.chain.back_solve(load.nodal)[:, :, 0]
+    result = np.empty((n_elements, assembled.order + 1, n_fields))
+    result[:, 0], result[:, 1] = nodes[:-1], nodes[1:]
+    root = np.sqrt(assembled.rod.material.young_modulus)
+    halves: dict[int, Array] = {}
+    for index, _, half in load.bubbles:
+        halves[index] = halves.get(index, 0.0) + half[:, 0] / root
+    for index, element in enumerate(assembled.elements):
+        right = halves.get(index, 0.0) - element.half_coupling @ result[index, :2].ravel()
+        bubbles = solve_triangular(element.bubble_factor, right, lower=True, trans=1, check_finite=False)
+        result[index, 2:] = bubbles.reshape(-1, n_fields)
+    return result

@@ -1,0 +1,143 @@
+"""Element borders that follow the edges of the contact zone.
+
+Each moving edge of a contact stretch takes the nearest element border inside the zone on both rods; the borders between
+two held ones keep their proportions, so that elements never overlap and the mesh depends smoothly on the edges.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from itertools import combinations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cases.scene import ContactPair, Rod, Scene
+from rodmodel.pairing import opposite_stations
+from rodmodel.system import SAME_BORDER
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Edge:
+    """A moving end of a stretch in contact.
+
+    Attributes
+    ----------
+    pair : name of the contact pair
+    stretch : number of the stretch it ends
+    outward : direction along the first rod that leads out of contact: -1 at the stretch's start, +1 at its end
+    """
+
+    pair: str
+    stretch: int
+    outward: int
+
+
+@dataclass(frozen=True, eq=False)
+class RodBorders:
+    """Borders of one rod and which of them are held or follow an edge.
+
+    Attributes
+    ----------
+    base : borders before any edge moves, mm
+    anchors : indices into base of borders that are held or follow an edge, ascending
+    edges : for each anchor the number of its edge, or -1 where it is held
+    """
+
+    base: Array
+    anchors: tuple[int, ...]
+    edges: tuple[int, ...]
+
+
+def natural_borders(scene: Scene, rod: Rod) -> Array:
+    """Borders of the scene's elements, and where they miss them loads and zone ends: fields have kinks there."""
+    borders = np.concatenate([rod.element_borders, _held_stations(scene, rod)])
+    borders = np.sort(np.clip(borders, 0.0, rod.element_borders[-1]))
+    return borders[np.concatenate([[True], np.diff(borders) > SAME_BORDER])]
+
+
+def _held_stations(scene: Scene, rod: Rod) -> Array:
+    loads = [load.position for load in scene.loads if load.rod == rod.name]
+    zones = [station for pair in scene.contacts for station in _on_rod(scene, pair, rod, np.array(pair.zone))]
+    return np.array([0.0, rod.element_borders[-1], *loads, *zones])
+
+
+def _on_rod(scene: Scene, pair: ContactPair, rod: Rod, station: Array) -> Array:
+    """Stations of a pair (along its first rod) on `rod`; empty where the rod has no part in the pair."""
+    if rod.name == pair.first.rod:
+        return station
+    if rod.name == pair.second.rod:
+        return opposite_stations(scene.rod(pair.first.rod), rod, station)
+    return np.empty(0)
+
+
+def border_plan(
+    scene: Scene, borders: Mapping[str, Array], edges: Sequence[Edge], positions: Array
+) -> dict[str, RodBorders]:
+    """Decide which border follows which edge: on every rod the assignment that moves the borders least.
+
+    A rod with fewer borders in the zone than edges gets new ones.
+    """
+    plan = {}
+    for rod in scene.rods:
+        targets = _edge_stations(scene, rod, edges, positions)
+        numbers = sorted(targets, key=lambda number: targets[number])
+        wanted = np.array([targets[number] for number in numbers])
+        base, held = borders[rod.name], _held_stations(scene, rod)
+        movable = _movable(scene, rod, base, held, edges)
+        if len(movable) < len(wanted):
+            base = np.unique(np.concatenate([base, wanted]))
+            movable = [int(index) for index in np.searchsorted(base, wanted)]
+        chosen = min(
+            combinations(movable, len(wanted)),
+            key=lambda indices: float(np.abs(base[list(indices)] - wanted).sum()),
+        )
+        is_held = [int(np.abs(base - station).argmin()) for station in held]
+        anchors = {**dict.fromkeys(is_held, -1), **dict(zip(chosen, numbers, strict=True))}
+        plan[rod.name] = RodBorders(
+            base, tuple(sorted(anchors)), tuple(anchors[index] for index in sorted(anchors))
+        )
+    return plan
+
+
+def _edge_stations(scene: Scene, rod: Rod, edges: Sequence[Edge], positions: Array) -> dict[int, float]:
+    """Where the edges lie along `rod`, by edge number, for those that the rod has a part in."""
+    return {
+        number: float(station)
+        for number, edge in enumerate(edges)
+        for station in _on_rod(scene, scene.contact(edge.pair), rod, positions[number : number + 1])
+    }
+
+
+def _movable(scene: Scene, rod: Rod, base: Array, held: Array, edges: Sequence[Edge]) -> list[int]:
+    """Borders inside the zones of the edges' pairs, other than held ones."""
+    zones = [
+        _on_rod(scene, scene.contact(name), rod, np.array(scene.contact(name).zone))
+        for name in {e.pair for e in edges}
+    ]
+    return [
+        index
+        for index, border in enumerate(base)
+        if np.abs(held - border).min() > SAME_BORDER
+        and any(zone.min() < border < zone.max() for zone in zones if len(zone))
+    ]
+
+
+def placed_borders(
+    scene: Scene, plan: Mapping[str, RodBorders], edges: Sequence[Edge], positions: Array
+) -> dict[str, Array]:
+    """Borders of every rod with the edges at `positions` (mm along each pair's first rod)."""
+    placed = {}
+    for rod in scene.rods:
+        borders = plan[rod.name]
+        stations = _edge_stations(scene, rod, edges, positions)
+        anchors = list(borders.anchors)
+        new = [
+            borders.base[anchor] if edge < 0 else stations[edge]
+            for anchor, edge in zip(anchors, borders.edges, strict=True)
+        ]
+        placed[rod.name] = np.interp(borders.base, borders.base[anchors], new)
+    return placed

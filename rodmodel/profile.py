@@ -1,0 +1,65 @@
+"""Contact pressure along the zone, from the forces at the contact points."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.interpolate import BarycentricInterpolator
+
+from cases.scene import ContactPair, Scene
+from rodmodel.centre_line import global_points
+from rodmodel.pairing import ContactGrid, facing_points
+
+Array = NDArray[np.float64]
+
+# Points drawn along an interval in contact; its pressure is a polynomial of about the axial order.
+DRAWN = 41
+
+
+@dataclass(frozen=True, eq=False)
+class ContactProfile:
+    """Pressure along a zone.
+
+    Attributes
+    ----------
+    station : along the first rod, mm, ascending, shape (n,)
+    position : middle of the first face, global, mm, shape (3, n)
+    middle, mean, outer : pressure in the middle of the width, averaged over it, and at its outer border, MPa, shape (n,)
+    """
+
+    station: Array
+    position: Array
+    middle: Array
+    mean: Array
+    outer: Array
+
+
+def pressure_profile(scene: Scene, pair: ContactPair, grid: ContactGrid, force: Array) -> ContactProfile:
+    """Profile of a pair from the forces at its contact points (N, shape (n_points,)).
+
+    Along an interval closed from end to end the pressure is the polynomial through its Lobatto points; along one that
+    is closed in parts, nothing is known between them, and they are joined by straight lines.
+    """
+    pressure = force.reshape(grid.weight.shape) / grid.weight
+    share = grid.weight[:, :1] / grid.weight[:, :1].sum(axis=2, keepdims=True)
+    outer = pressure[:, :, -1] if grid.symmetric else np.maximum(pressure[:, :, 0], pressure[:, :, -1])
+    lines = np.array([pressure[:, :, grid.middle], (share * pressure).sum(axis=2), outer])
+    stations, values = [], []
+    for index, station in enumerate(grid.station):
+        # The ends may be open by round-off: the pressure is zero there where a border sits on an edge.
+        closed = bool((lines[:, index, 1:-1] > 0.0).all())
+        drawn = np.linspace(station[0], station[-1], DRAWN) if closed else station
+        if closed:
+            drawn_values = np.maximum(BarycentricInterpolator(station, lines[:, index].T)(drawn).T, 0.0)
+        else:
+            drawn_values = lines[:, index]
+        first = 0 if index == 0 else 1
+        stations.append(drawn[first:])
+        values.append(drawn_values[:, first:])
+    station = np.concatenate(stations)
+    middle, mean, outer_values = np.concatenate(values, axis=1)
+    across = np.full(len(station), grid.across[grid.middle])
+    position = global_points(scene.rod(pair.first.rod), facing_points(scene, pair, station, across).first)
+    return ContactProfile(station, position, middle, mean, outer_values)

@@ -1,0 +1,217 @@
+"""A solved scene: displacement, strain, stress, resultants, reactions and contact at any point of any rod."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cases.scene import End, Scene
+from rodmodel.assembly import AssembledRod, compliance
+from rodmodel.axial import shape_function_slopes, shape_functions
+from rodmodel.centre_line import frame, global_points
+from rodmodel.edges import Stretch
+from rodmodel.pairing import face_axes, facing_points
+from rodmodel.profile import ContactProfile, pressure_profile
+from rodmodel.section import (
+    U,
+    V,
+    W,
+    elasticity_matrix,
+    section_functions,
+    section_quadrature,
+    strain_operators,
+)
+from rodmodel.system import ContactSystem
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Cost:
+    """What a solution cost.
+
+    Attributes
+    ----------
+    unknowns : degrees of freedom carried by all rods
+    setup_seconds : sections, elements and the first contact system; wall clock
+    solve_seconds : contact, border search and the final coefficients; wall clock
+    """
+
+    unknowns: int
+    setup_seconds: float
+    solve_seconds: float
+
+
+@dataclass(frozen=True, eq=False)
+class ContactPoints:
+    """State of the contact points of a pair, for the full width.
+
+    Attributes
+    ----------
+    position : on the first face, global, mm, shape (3, n)
+    normal : outward normal of the first face, shape (3, n)
+    gap : d, mm, shape (n,)
+    force : compressive, N, shape (n,)
+    """
+
+    position: Array
+    normal: Array
+    gap: Array
+    force: Array
+
+
+@dataclass(frozen=True, eq=False)
+class Solution:
+    """Displacements of all rods and the contact between them.
+
+    Attributes
+    ----------
+    scene : what was solved
+    level, order : k of h_k and p
+    outcome : 'converged', or why not
+    contact_solutions : contact solutions spent, one a set of border positions
+    stretches : parts of the zones found in contact, with the borders that ended on their edges
+    system : rods and contact points on the final borders
+    force : at every contact point of the system, N
+    coefficients : by rod name, degrees of freedom by element, shape (n_elements, order + 1, n_fields)
+    cost : unknowns and seconds
+    """
+
+    scene: Scene
+    level: int
+    order: int
+    outcome: str
+    contact_solutions: int
+    stretches: tuple[Stretch, ...]
+    system: ContactSystem
+    force: Array
+    coefficients: Mapping[str, Array]
+    cost: Cost
+
+    @property
+    def strain_energy(self) -> float:
+        """Elastic energy of all rods, half the work of loads and contact forces on the final state, N mm."""
+        loads = [self.system.total_load(rod.name, self.force) for rod in self.scene.rods]
+        return 0.5 * sum(float(compliance(load, load)[0, 0]) for load in loads)
+
+    def displacement(self, rod: str, station: Array) -> Array:
+        """Displacement of the centre line, global components, mm, shape (3, n); station in mm along the rod."""
+        station = np.atleast_1d(np.asarray(station, dtype=float))
+        return self.displacement_at(rod, np.array([np.zeros_like(station), np.zeros_like(station), station]))
+
+    def displacement_at(self, rod: str, points: Array) -> Array:
+        """Displacement at points (x, y, s) of a rod, global components, mm; shape (3, n) to (3, n)."""
+        assembled = self.system.rods[rod]
+        psi, _ = self._axial(assembled, points[2])
+        values, _, _ = section_functions(assembled.rod.section, assembled.fields, points[0], points[1])
+        local = np.array([(values * psi)[assembled.fields.indices(c)].sum(axis=0) for c in (U, V, W)])
+        return np.asarray(frame(assembled.rod.centre_line).T @ local)
+
+    def strain(self, rod: str, points: Array) -> Array:
+        """Strain in the local frame at points (x, y, s): xx, yy, ss, ys, xs, xy (shears as gamma), shape (6, n)."""
+        assembled = self.system.rods[rod]
+        psi, slope = self._axial(assembled, points[2])
+        b0, b1 = strain_operators(assembled.rod.section, assembled.fields, points[0], points[1])
+        return np.einsum("pcf,fp->cp", b0, psi) + np.einsum("pcf,fp->cp", b1, slope)
+
+    def stress(self, rod: str, points: Array) -> Array:
+        """Stress in the local frame at points (x, y, s), MPa, ordered as the strain, shape (6, n)."""
+        return elasticity_matrix(self.scene.rod(rod).material, self.level) @ self.strain(rod, points)
+
+    def section_resultants(self, rod: str, station: Array) -> Array:
+        """N, Q1, Q2 (N), M1, M2, T (N mm) from the stress in the sections at `station`, shape (6, n).
+
+        M1 = int sigma_s y, M2 = -int sigma_s x, T = int (x tau_ys - y tau_xs).
+        """
+        assembled = self.system.rods[rod]
+        station = np.atleast_1d(np.asarray(station, dtype=float))
+        x, y, weight = section_quadrature(assembled.rod.section, self.level)
+        b0, b1 = strain_operators(assembled.rod.section, assembled.fields, x, y)
+        law = elasticity_matrix(assembled.rod.material, self.level)
+        # What each stress component at a point adds to each resultant; components xx, yy, xy add nothing.
+        lever = np.zeros((6, 6, len(x)))
+        lever[0, 2], lever[1, 4], lever[2, 3] = 1.0, 1.0, 1.0
+        lever[3, 2], lever[4, 2], lever[5, 3], lever[5, 4] = y, -x, x, -y
+        sums = np.einsum("rcp,cd,p->rpd", lever, law, weight).reshape(6, -1)
+        psi, slope = self._axial(assembled, station)
+        fields = assembled.fields.count
+        return np.asarray(sums @ b0.reshape(-1, fields) @ psi + sums @ b1.reshape(-1, fields) @ slope)
+
+    def reaction(self, rod: str, end: End) -> Array:
+        """Force (N) and moment about the section's centre (N mm) of a clamp on the rod, global, shape (6,).
+
+        The residual of the end section's equations: exact in the sense of virtual work.
+        """
+        assembled = self.system.rods[rod]
+        load = self.system.total_load(rod, self.force)
+        at_end = end == "end"
+        element, values = assembled.elements[-at_end], self.coefficients[rod][-at_end]
+        rows = element.condensed.reshape(2, assembled.fields.count, -1)[int(at_end)]
+        residual = (
+            assembled.rod.material.young_modulus * (rows @ values[:2].ravel()) - load.ends[int(at_end), :, 0]
+        )
+        axes = frame(assembled.rod.centre_line)
+        local = _rigid_motions(assembled) @ residual
+        return np.concatenate([axes.T @ local[:3], axes.T @ local[3:]])
+
+    def contact_points(self, pair: str) -> ContactPoints:
+        """State of every contact point of the pair, mirrored where symmetry carried one half."""
+        contact, grid = self.scene.contact(pair), self.system.grids[pair]
+        points = self.system.points[pair]
+        force = self.force[points]
+        spring = self.system.spring[points]
+        open_gap = self.system.initial_gap[points] + self.system.compliance[points] @ self.force
+        gap = np.where(force > 0.0, -force / spring, open_gap)
+        station, across = grid.flat()
+        if grid.symmetric:
+            beyond = across > across.min()
+            station, across = (
+                np.concatenate([station, station[beyond]]),
+                np.concatenate([across, -across[beyond]]),
+            )
+            force = np.where(beyond, 0.5 * force, force)
+            force, gap = np.concatenate([force, force[beyond]]), np.concatenate([gap, gap[beyond]])
+        first = self.scene.rod(contact.first.rod)
+        position = global_points(first, facing_points(self.scene, contact, station, across).first)
+        normal = face_axes(first, contact.first.face).normal
+        return ContactPoints(position, np.repeat(normal[:, None], len(station), axis=1), gap, force)
+
+    def contact_profile(self, pair: str) -> ContactProfile:
+        """Pressure along the zone of the pair."""
+        return pressure_profile(
+            self.scene,
+            self.scene.contact(pair),
+            self.system.grids[pair],
+            self.force[self.system.points[pair]],
+        )
+
+    def _axial(self, assembled: AssembledRod, station: Array) -> tuple[Array, Array]:
+        """psi and psi' of every field at stations, each of shape (n_fields, n)."""
+        index, xi = assembled.locate(station)
+        values = self.coefficients[assembled.rod.name][index]
+        jacobian = 2.0 / np.diff(assembled.borders)[index]
+        psi = np.einsum("an,naf->fn", shape_functions(self.order, xi), values)
+        return psi, np.einsum("an,naf->fn", shape_function_slopes(self.order, xi), values) * jacobian
+
+
+def _rigid_motions(assembled: AssembledRod) -> Array:
+    """Unit translations along and rotations about e1, e2, t of a section in terms of its fields, shape (6, n_fields)."""
+    fields, section = assembled.fields, assembled.rod.section
+    half_width, half_height = 0.5 * section.width / np.sqrt(3.0), 0.5 * section.height / np.sqrt(3.0)
+    motions = np.zeros((6, fields.count))
+    for motion, component, degrees, size in (
+        (0, U, (0, 0), 1.0),
+        (1, V, (0, 0), 1.0),
+        (2, W, (0, 0), 1.0),
+        (3, W, (0, 1), half_height),
+        (4, W, (1, 0), -half_width),
+        (5, U, (0, 1), -half_height),
+        (5, V, (1, 0), half_width),
+    ):
+        index = fields.index(component, *degrees)
+        if index is not None:
+            motions[motion, index] = size
+    return motions

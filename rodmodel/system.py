@@ -1,0 +1,139 @@
+"""The contact problem of a scene on given element borders: all rods reduced to their contact points."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cases.scene import ContactPair, Scene
+from rodmodel.assembly import (
+    AssembledRod,
+    ElementStore,
+    Functionals,
+    added,
+    assembled_rod,
+    combined,
+    compliance,
+    functionals_at,
+    section_loads,
+)
+from rodmodel.pairing import (
+    ContactGrid,
+    contact_grid,
+    face_axes,
+    facing_points,
+    opposite_stations,
+    width_across,
+)
+from rodmodel.section import Fields, section_functions
+
+Array = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+
+# Borders of two meshes closer than this (mm) are the same border written with different digits.
+SAME_BORDER = 1e-6
+
+
+@dataclass(frozen=True, eq=False)
+class ContactSystem:
+    """Gap d = initial_gap + compliance @ force over the contact points of all pairs, and what it was made from.
+
+    Attributes
+    ----------
+    rods : assembled rods by name
+    grids : contact points by pair name; the points of all pairs follow one another in one long vector
+    points : by pair name, which part of the vector is the pair's
+    gaps : by rod name, the functionals -u_n of its contact points (n the outward normal of its own face) and their
+        places in the vector
+    loads : by rod name, the given loads
+    compliance : C, mm/N, shape (n, n)
+    initial_gap : gap under the given loads without contact, mm, shape (n,)
+    spring : c_n w, N/mm, shape (n,)
+    """
+
+    scene: Scene
+    rods: Mapping[str, AssembledRod]
+    grids: Mapping[str, ContactGrid]
+    points: Mapping[str, slice]
+    gaps: Mapping[str, tuple[Functionals, IntArray]]
+    loads: Mapping[str, Functionals]
+    compliance: Array
+    initial_gap: Array
+    spring: Array
+
+    def total_load(self, rod: str, force: Array) -> Functionals:
+        """Given loads and contact forces on a rod as one functional; its coefficients are the solution."""
+        gap, places = self.gaps[rod]
+        return added(self.loads[rod], combined(gap, force[places][:, None]))
+
+
+def contact_system(
+    scene: Scene, fields: Mapping[str, Fields], borders: Mapping[str, Array], store: ElementStore
+) -> ContactSystem:
+    """Assemble the rods on `borders` (mm, by rod name) and reduce them to their contact points."""
+    rods = {
+        rod.name: assembled_rod(scene, rod, fields[rod.name], borders[rod.name], store) for rod in scene.rods
+    }
+    grids = {pair.name: _grid(scene, pair, rods) for pair in scene.contacts}
+    counts = [grid.weight.size for grid in grids.values()]
+    ends = np.cumsum([0, *counts])
+    points = {name: slice(ends[i], ends[i + 1]) for i, name in enumerate(grids)}
+    matrix = np.zeros((ends[-1], ends[-1]))
+    gap, spring = np.empty(ends[-1]), np.empty(ends[-1])
+    for pair in scene.contacts:
+        gap[points[pair.name]] = pair.gap
+        spring[points[pair.name]] = pair.penalty * grids[pair.name].weight.ravel()
+    gaps, loads = {}, {}
+    for name, assembled in rods.items():
+        gaps[name] = _gap_functionals(scene, assembled, grids, points)
+        loads[name] = section_loads(assembled, scene.loads)
+        functionals, places = gaps[name]
+        matrix[np.ix_(places, places)] += compliance(functionals, functionals)
+        gap[places] += compliance(functionals, loads[name])[:, 0]
+    return ContactSystem(scene, rods, grids, points, gaps, loads, matrix, gap, spring)
+
+
+def _grid(scene: Scene, pair: ContactPair, rods: Mapping[str, AssembledRod]) -> ContactGrid:
+    """Contact points between the borders of both rods: enough of them to integrate the penalty energy exactly."""
+    first, second = rods[pair.first.rod], rods[pair.second.rod]
+    start, end = pair.zone
+    borders = np.sort(
+        np.concatenate([first.borders, opposite_stations(second.rod, first.rod, second.borders)])
+    )
+    inside = borders[(borders > start + SAME_BORDER) & (borders < end - SAME_BORDER)]
+    borders = np.concatenate([[start], inside, [end]])
+    borders = borders[np.concatenate([[True], np.diff(borders) > SAME_BORDER])]
+    n_across = max(first.fields.level, second.fields.level) + 2
+    across_is_x = face_axes(first.rod, pair.first.face).axis == 1
+    symmetric = first.fields.mirror_x if across_is_x else first.fields.mirror_y
+    n_along = max(first.order, second.order) + 2
+    return contact_grid(borders, width_across(scene, pair), n_along, n_across + 1 - n_across % 2, symmetric)
+
+
+def _gap_functionals(
+    scene: Scene, assembled: AssembledRod, grids: Mapping[str, ContactGrid], points: Mapping[str, slice]
+) -> tuple[Functionals, IntArray]:
+    """-u_n at all contact points on one rod, n being the outward normal of the face that they lie on."""
+    rod, fields = assembled.rod, assembled.fields
+    stations, directions, places = [np.empty(0)], [np.empty((fields.count, 0))], [np.empty(0, dtype=np.int64)]
+    for pair in scene.contacts:
+        for side in (pair.first, pair.second):
+            if side.rod != rod.name:
+                continue
+            facing = facing_points(scene, pair, *grids[pair.name].flat())
+            x, y, station = facing.first if side is pair.first else facing.second
+            stations.append(station)
+            directions.append(inward_direction(assembled, side.face, x, y))
+            places.append(np.arange(points[pair.name].start, points[pair.name].stop))
+    functionals = functionals_at(assembled, np.concatenate(stations), np.concatenate(directions, axis=1))
+    return functionals, np.concatenate(places)
+
+
+def inward_direction(assembled: AssembledRod, face: str, x: Array, y: Array) -> Array:
+    """Value of every field in the direction -n of a face at section points, shape (n_fields, n_points)."""
+    axes = face_axes(assembled.rod, face)
+    values, _, _ = section_functions(assembled.rod.section, assembled.fields, x, y)
+    return np.where((assembled.fields.table[0] == axes.axis)[:, None], -axes.sign * values, 0.0)
