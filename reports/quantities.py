@@ -16,9 +16,9 @@ from reports.equilibrium import equilibrium_residual, equilibrium_resultants
 from reports.geometry import centre_line_points, contact_limits, pair_axis
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
 
-    from cases.scene import Clamp, ContactPair, End, Rod, Scene
+    from cases.scene import Clamp, ContactPair, End, Rod, Scene, Vector
     from reports.solution import Array, ContactProfile, Solution
 
 AXES = ("X", "Y", "Z")
@@ -194,6 +194,7 @@ class Quantities:
     Attributes
     ----------
     outcome : the solver's: 'converged', or why not
+    point_stresses : sigma_s at stated points, by rod and (x, y, s), MPa
     reactions : force (N) and moment (N mm) of each support on its rod, global, shape (6,) each
     equilibrium_residual : see `DEFINITIONS`
     setup_seconds, solve_seconds : the solver's own, disjoint
@@ -202,6 +203,7 @@ class Quantities:
     outcome: str
     contacts: tuple[ContactQuantities, ...]
     rods: tuple[RodQuantities, ...]
+    point_stresses: Mapping[tuple[str, Vector], float]
     reactions: Mapping[tuple[str, End], Array]
     strain_energy: float
     equilibrium_residual: float
@@ -230,25 +232,34 @@ class Quantities:
         raise KeyError(name)
 
 
-def evaluate(solution: Solution, stations: Mapping[str, Array] | None = None) -> Quantities:
+def evaluate(
+    solution: Solution,
+    stations: Mapping[str, Array] | None = None,
+    stress_points: Sequence[tuple[str, Vector]] = (),
+) -> Quantities:
     """All quantities of a solution.
 
     Parameters
     ----------
     stations : further stations per rod, arc length, mm, added to `default_stations`
+    stress_points : rod and (x, y, s), mm, where sigma_s is wanted
     """
     scene = solution.scene
     extra = stations or {}
-    reactions = {(clamp.rod, clamp.end): solution.reaction(clamp.rod, clamp.end) for clamp in scene.supports}
-    rods = []
-    for rod in scene.rods:
-        station = merged_stations(rod, extra.get(rod.name, np.empty(0)))
-        rods.append(rod_quantities(solution, rod, station))
     return Quantities(
         outcome=solution.outcome,
         contacts=tuple(contact_quantities(solution, pair) for pair in scene.contacts),
-        rods=tuple(rods),
-        reactions=reactions,
+        rods=tuple(
+            rod_quantities(solution, rod, merged_stations(rod, extra.get(rod.name, np.empty(0))))
+            for rod in scene.rods
+        ),
+        point_stresses={
+            (rod, point): float(stress_s(solution, rod, np.array([point]).T)[0])
+            for rod, point in stress_points
+        },
+        reactions={
+            (clamp.rod, clamp.end): solution.reaction(clamp.rod, clamp.end) for clamp in scene.supports
+        },
         strain_energy=float(solution.strain_energy),
         equilibrium_residual=equilibrium_residual(solution),
         unknowns=solution.cost.unknowns,

@@ -1,0 +1,147 @@
+"""What a case is held against: the 3D reference of this run, independent 3D values, published values."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from cases.case import Check
+from reports.comparison import CURVES, Estimate, compare, sequence_estimate
+from reports.truth import SOURCE, independent_values
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from cases.case import Case
+    from cases.scene import Vector
+    from reports.comparison import Comparison, Extrapolate
+    from reports.quantities import Quantities
+    from reports.solution import Array, Model
+    from reports.truth import IndependentValues
+
+REFERENCE_SOURCE = "3D reference of this run, extrapolated from three meshes"
+
+
+@dataclass(frozen=True)
+class EvaluationPoints:
+    """Where a case wants its quantities besides the default stations (arguments of `quantities.evaluate`)."""
+
+    stations: Mapping[str, Array]
+    stress_points: tuple[tuple[str, Vector], ...]
+
+
+def evaluation_points(case: Case) -> EvaluationPoints:
+    """Stations of the independent deflections and the points whose stress is compared.
+
+    Raises
+    ------
+    OSError, ValueError
+        if the file of independent values cannot be read.
+    """
+    stations = {} if case.independent is None else independent_values(case.independent, case.scene).stations
+    points = tuple((check.of, check.point) for check in case.compare if check.point is not None)
+    return EvaluationPoints(stations, points)
+
+
+def extract(quantities: Quantities, check: Check) -> Array:
+    """The values of a check's quantity: numbers, shape (n,), or vectors along a rod, shape (3, n).
+
+    Nothing to report (the centre without contact, a clamp moment without a clamp) is an empty array.
+    """
+    values: object
+    match check.quantity:
+        case "contact_force":
+            values = quantities.contact(check.of).force
+        case "contact_centre":
+            values = quantities.contact(check.of).centre
+        case "contact_edges":
+            values = quantities.contact(check.of).edges
+        case "contact_edges_outer":
+            values = quantities.contact(check.of).edges_outer
+        case "deflection":
+            return quantities.rod(check.of).displacement
+        case "bending_moment":
+            values = quantities.rod(check.of).moment
+        case "end_moment_equilibrium":
+            values = quantities.rod(check.of).end_moment_equilibrium
+        case "max_bending_stress":
+            values = quantities.rod(check.of).max_bending_stress
+        case "stress_s":
+            assert check.point is not None  # the loader asks for it
+            values = quantities.point_stresses[check.of, check.point]
+    return np.empty(0) if values is None else np.atleast_1d(np.asarray(values, dtype=float)).ravel()
+
+
+def case_comparisons(
+    case: Case, rod: Quantities, references: Sequence[Quantities], extrapolate: Extrapolate
+) -> tuple[Comparison, ...]:
+    """All comparisons of a case, in the order: 3D reference, independent values, published values.
+
+    Parameters
+    ----------
+    rod, references : quantities of the rod model and of the 3D reference on three meshes, coarse to fine, all
+        evaluated at the case's `evaluation_points`
+    """
+    found = []
+    for check in case.compare:
+        values = [extract(reference, check) for reference in references]
+        found.append(
+            compare(
+                check,
+                "rod",
+                extract(rod, check),
+                sequence_estimate(values, extrapolate, curve=check.quantity in CURVES),
+                kind="reference",
+                source=REFERENCE_SOURCE,
+                outcomes=[rod.outcome, *(reference.outcome for reference in references)],
+            )
+        )
+    if case.independent is not None:
+        truth = independent_values(case.independent, case.scene)
+        found += _against_truth(case, "rod", rod, truth)
+        found += _against_truth(case, "reference", references[-1], truth)
+    for published in case.published:
+        check = Check(published.quantity, published.of, published.tolerance)
+        found.append(
+            compare(
+                check,
+                "rod",
+                extract(rod, check),
+                Estimate(np.array(published.value, dtype=float), 0.0),
+                kind="published",
+                source=published.source,
+                outcomes=[rod.outcome],
+            )
+        )
+    return tuple(found)
+
+
+def _against_truth(
+    case: Case, model: Model, quantities: Quantities, truth: IndependentValues
+) -> list[Comparison]:
+    """The case's own checks, with their tolerances, for those quantities that the independent values hold."""
+    found = []
+    for check in case.compare:
+        estimate = truth.estimates.get((check.quantity, check.of))
+        if estimate is None:
+            continue
+        if check.quantity == "deflection":
+            rod = quantities.rod(check.of)
+            at = np.searchsorted(rod.station, truth.stations[check.of] - 1e-6 * rod.station[-1])
+            value = rod.displacement[1, at]
+        else:
+            value = extract(quantities, check)
+        found.append(
+            compare(
+                check,
+                model,
+                value,
+                estimate,
+                kind="3d converged",
+                source=SOURCE,
+                outcomes=[quantities.outcome],
+            )
+        )
+    return found

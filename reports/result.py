@@ -1,0 +1,166 @@
+"""The JSON object that `rodcheck solve --json` prints; `rodcheck schema result` prints its JSON Schema."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Annotated
+
+from pydantic import BaseModel, ConfigDict, Field
+
+from reports.quantities import DEFINITIONS
+
+if TYPE_CHECKING:
+    from reports.quantities import ContactQuantities, Quantities, RodQuantities
+    from reports.solution import Model
+
+Triple = Annotated[list[float], Field(min_length=3, max_length=3)]
+Stretch = Annotated[list[float], Field(min_length=2, max_length=2)]
+
+
+def _described(name: str) -> str:
+    definition = DEFINITIONS[name]
+    return f"{definition.text} Unit: {definition.unit or 'none'}."
+
+
+class _Object(BaseModel):
+    """No unknown keys, no NaN and no infinity anywhere."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
+
+
+class Seconds(_Object):
+    """Wall-clock time, s."""
+
+    setup: float = Field(
+        description="Everything before the contact iteration that the solver counts as set-up, s."
+    )
+    solve: float = Field(description="The solution itself, disjoint from set-up, s.")
+    total: float = Field(description="From the scene to all quantities of this object, s.")
+
+
+class Pressure(_Object):
+    """Contact pressure along the zone, at the solver's own stations."""
+
+    position: list[float] = Field(
+        description="Coordinate along the global axis to which the first rod is most nearly parallel, mm."
+    )
+    middle: list[float] = Field(description=_described("pressure_middle"))
+    mean: list[float] = Field(description=_described("pressure_mean"))
+    outer: list[float] = Field(description=_described("pressure_outer"))
+
+
+class Contact(_Object):
+    """What one contact pair transmits."""
+
+    pair: str = Field(description="Name of the contact pair in the case file.")
+    force: float = Field(description=_described("contact_force"))
+    resultant: Triple = Field(description="The contact force on the second rod, global components, N.")
+    centre: float | None = Field(description=_described("contact_centre") + " Null without contact.")
+    edges: list[Stretch] = Field(description=_described("contact_edges"))
+    edges_outer: list[Stretch] = Field(description=_described("contact_edges_outer"))
+    penetration: float = Field(description=_described("penetration"))
+    pressure: Pressure
+
+
+class RodCurves(_Object):
+    """Deflection and bending moment along one rod."""
+
+    station: list[float] = Field(description="Arc length from the rod's start, both ends included, mm.")
+    position: list[Triple] = Field(
+        description="Undeformed centre line at the stations, global [X, Y, Z], mm."
+    )
+    displacement: list[Triple] = Field(description=_described("deflection"))
+    moment: list[float] = Field(description=_described("bending_moment"))
+    moment_stress: list[float] = Field(description=_described("bending_moment_stress"))
+    end_moment_equilibrium: float | None = Field(
+        description=_described("end_moment_equilibrium") + " Null without a clamp."
+    )
+    end_moment_stress: float | None = Field(
+        description=_described("end_moment_stress") + " Null without a clamp."
+    )
+    max_bending_stress: float | None = Field(
+        description=_described("max_bending_stress") + " Null without a clamp."
+    )
+
+
+class Result(_Object):
+    """One case solved by one model. Units: N, mm, MPa, s."""
+
+    case: str = Field(description="Name of the case.")
+    model: str = Field(description="'rod' or 'reference'.", pattern="^(rod|reference)$")
+    level: int | None = Field(description="Level of the rod model; null for the reference.")
+    order: int | None = Field(description="Order along the axis; null for the reference.")
+    unknowns: int = Field(description="Unknowns carried in the solution.")
+    converged: bool
+    outcome: str = Field(description="'converged', or why not.")
+    contact_solutions: int = Field(
+        description="Contact solutions spent (border positions or active sets tried)."
+    )
+    seconds: Seconds
+    strain_energy: float = Field(description=_described("strain_energy"))
+    equilibrium_residual: float = Field(description=_described("equilibrium_residual"))
+    contacts: list[Contact]
+    rods: dict[str, RodCurves]
+
+
+def result(
+    case: str,
+    model: Model,
+    level: int | None,
+    order: int | None,
+    quantities: Quantities,
+    total_seconds: float,
+) -> Result:
+    """The result object of a solved case.
+
+    Raises
+    ------
+    pydantic.ValidationError
+        if a number is not finite.
+    """
+    return Result(
+        case=case,
+        model=model,
+        level=level,
+        order=order,
+        unknowns=quantities.unknowns,
+        converged=quantities.converged,
+        outcome=quantities.outcome,
+        contact_solutions=quantities.contact_solutions,
+        seconds=Seconds(setup=quantities.setup_seconds, solve=quantities.solve_seconds, total=total_seconds),
+        strain_energy=quantities.strain_energy,
+        equilibrium_residual=quantities.equilibrium_residual,
+        contacts=[_contact(contact) for contact in quantities.contacts],
+        rods={rod.rod: _rod(rod) for rod in quantities.rods},
+    )
+
+
+def _contact(contact: ContactQuantities) -> Contact:
+    pressure = contact.pressure
+    return Contact(
+        pair=contact.pair,
+        force=contact.force,
+        resultant=contact.resultant.tolist(),
+        centre=contact.centre,
+        edges=[list(stretch) for stretch in contact.edges],
+        edges_outer=[list(stretch) for stretch in contact.edges_outer],
+        penetration=contact.penetration,
+        pressure=Pressure(
+            position=pressure.position.tolist(),
+            middle=pressure.middle.tolist(),
+            mean=pressure.mean.tolist(),
+            outer=pressure.outer.tolist(),
+        ),
+    )
+
+
+def _rod(rod: RodQuantities) -> RodCurves:
+    return RodCurves(
+        station=rod.station.tolist(),
+        position=rod.position.T.tolist(),
+        displacement=rod.displacement.T.tolist(),
+        moment=rod.moment.tolist(),
+        moment_stress=rod.stress[3].tolist(),
+        end_moment_equilibrium=rod.end_moment_equilibrium,
+        end_moment_stress=rod.end_moment_stress,
+        max_bending_stress=rod.max_bending_stress,
+    )

@@ -1,0 +1,192 @@
+"""A solution in closed form, so that what reads solutions can be tested before and without any solver."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pytest
+
+from cases.scene import (
+    Clamp,
+    ContactPair,
+    Line,
+    Material,
+    Rectangle,
+    Rod,
+    RodFace,
+    Scene,
+    SectionForce,
+)
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from cases.scene import End
+    from reports.solution import Array
+
+LENGTH = 300.0
+SIDE = 15.0
+INERTIA = SIDE**4 / 12.0
+
+
+@dataclass(frozen=True)
+class FakeCost:
+    """Cost with distinguishable numbers."""
+
+    unknowns: int = 4536
+    setup_seconds: float = 0.01
+    solve_seconds: float = 0.02
+
+
+@dataclass(frozen=True)
+class FakeContact:
+    """Both what `contact_points` and what `contact_profile` return."""
+
+    station: Array
+    position: Array
+    normal: Array
+    gap: Array
+    force: Array
+    middle: Array
+    mean: Array
+    outer: Array
+
+
+@dataclass(frozen=True)
+class BeamSolution:
+    """Euler-Bernoulli cantilevers under point forces along e2; the contact force is prescribed.
+
+    Deflection of a cantilever under a force Q at distance a from the clamp (any textbook):
+    Q s^2 (3 a - s) / (6 E I) up to the force, Q a^2 (3 s - a) / (6 E I) beyond; M1 = -E I v''.
+    """
+
+    scene: Scene
+    contact: FakeContact
+    outcome: str = "converged"
+    contact_solutions: int = 5
+    strain_energy: float = 1.0
+    cost: FakeCost = field(default_factory=FakeCost)
+
+    def _forces(self, rod: str) -> tuple[Array, Array]:
+        """Distances from the clamp, mm, and forces along e2 (here Y), N."""
+        length = self.scene.rod(rod).length
+        origin = self.scene.rod(rod).centre_line.start[0]
+        loads = [(load.position, load.force[1]) for load in self.scene.loads if load.rod == rod]
+        pair = self.scene.contacts[0]
+        sign = -1.0 if pair.first.rod == rod else 1.0
+        station = np.array([s for s, _ in loads] + list(self.contact.position[0] - origin))
+        force = np.array([f for _, f in loads] + list(sign * self.contact.force))
+        return (station if self._clamp(rod) == "start" else length - station), force
+
+    def _clamp(self, rod: str) -> End:
+        return next(clamp.end for clamp in self.scene.supports if clamp.rod == rod)
+
+    def _from_clamp(self, rod: str, station: Array) -> Array:
+        return station if self._clamp(rod) == "start" else self.scene.rod(rod).length - station
+
+    def displacement(self, rod: str, station: Array) -> Array:
+        s = self._from_clamp(rod, station)[:, None]
+        a, force = self._forces(rod)
+        stiffness = self.scene.rod(rod).material.young_modulus * INERTIA
+        near, far = s**2 * (3 * a - s), a**2 * (3 * s - a)
+        deflection = np.where(s < a, near, far) @ force / (6 * stiffness)
+        return np.vstack([np.zeros_like(deflection), deflection, np.zeros_like(deflection)])
+
+    def section_resultants(self, rod: str, station: Array) -> Array:
+        s = self._from_clamp(rod, station)[:, None]
+        a, force = self._forces(rod)
+        beyond = s <= a
+        sign = 1.0 if self._clamp(rod) == "start" else -1.0
+        result = np.zeros((6, len(station)))
+        result[2] = sign * (beyond @ force)
+        result[3] = -np.where(beyond, a - s, 0.0) @ force
+        return result
+
+    def stress(self, rod: str, points: Array) -> Array:
+        result = np.zeros((6, points.shape[1]))
+        result[2] = self.section_resultants(rod, points[2])[3] * points[1] / INERTIA
+        return result
+
+    def reaction(self, rod: str, end: End) -> Array:
+        a, force = self._forces(rod)
+        sign = 1.0 if self._clamp(rod) == "start" else -1.0
+        return np.array([0.0, -force.sum(), 0.0, 0.0, 0.0, -sign * (a @ force)])
+
+    def contact_points(self, pair: str) -> FakeContact:
+        return self.contact
+
+    def contact_profile(self, pair: str) -> FakeContact:
+        return self.contact
+
+
+def _scene(young_modulus_upper: float = 50_000.0) -> Scene:
+    section = Rectangle(SIDE, SIDE)
+    up = (0.0, 1.0, 0.0)
+    lower = Rod(
+        "lower",
+        Line((0.0, 0.0, 0.0), (300.0, 0.0, 0.0), up),
+        section,
+        Material(200_000.0, 0.3),
+        (0.0, 66.67, 133.33, 200.0, 233.33, 266.67, 300.0),
+    )
+    upper = Rod(
+        "upper",
+        Line((200.0, 15.0, 0.0), (500.0, 15.0, 0.0), up),
+        section,
+        Material(young_modulus_upper, 0.3),
+        (0.0, 33.33, 66.67, 100.0, 166.67, 233.33, 300.0),
+    )
+    pair = ContactPair(
+        "overlap", RodFace("lower", "top"), RodFace("upper", "bottom"), (200.0, 300.0), 0.0, 1e6
+    )
+    return Scene(
+        "two-cantilevers",
+        (lower, upper),
+        (Clamp("lower", "start"), Clamp("upper", "end")),
+        (SectionForce("upper", 166.67, (0.0, -1000.0, 0.0)),),
+        (pair,),
+    )
+
+
+def _hertz_contact(centre: float, half_width: float, force: float, stations: int = 401) -> FakeContact:
+    """Hertz's profile p = p0 sqrt(1 - (X - centre)^2 / half_width^2) on the zone X = 200 .. 300 mm."""
+    x = np.linspace(200.0, 300.0, stations)
+    shape = np.sqrt(np.maximum(0.0, 1.0 - ((x - centre) / half_width) ** 2))
+    nodal = force * shape / shape.sum()
+    pressure = shape * 2.0 * force / (np.pi * half_width * SIDE)
+    return FakeContact(
+        station=x,
+        position=np.vstack([x, np.full_like(x, SIDE / 2), np.zeros_like(x)]),
+        normal=np.tile([[0.0], [1.0], [0.0]], stations),
+        gap=np.where(shape > 0.0, -pressure / 1e6, 1e-3),
+        force=nodal,
+        middle=pressure,
+        mean=pressure,
+        outer=pressure,
+    )
+
+
+@pytest.fixture
+def beam_scene() -> Scene:
+    """The paper's two cantilevers."""
+    return _scene()
+
+
+@pytest.fixture
+def hertz_contact() -> Callable[..., FakeContact]:
+    """Contact of a given centre, half width (mm) and force (N)."""
+    return _hertz_contact
+
+
+@pytest.fixture
+def beam_solution(beam_scene: Scene) -> Callable[..., BeamSolution]:
+    """Closed-form solution for a contact of given centre, half width (mm) and force (N)."""
+
+    def build(
+        centre: float = 250.0, half_width: float = 12.0, force: float = 320.0, **changes: Any
+    ) -> BeamSolution:
+        return BeamSolution(beam_scene, _hertz_contact(centre, half_width, force), **changes)
+
+    return build

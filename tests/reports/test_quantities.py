@@ -1,0 +1,198 @@
+"""Every compared quantity on Euler-Bernoulli cantilevers with a prescribed contact force, in closed form."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pytest
+
+from cases.scene import Clamp, Line, Material, Rectangle, Rod, Scene, SectionForce
+from reports.equilibrium import equilibrium_residual, equilibrium_resultants
+from reports.quantities import DEFINITIONS, default_stations, evaluate, stress_residual, stress_s
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from reports.solution import Array, Solution
+
+ROUND_OFF = 1e-9
+
+
+def test_contact_force_and_centre_are_the_resultant_and_its_place(
+    beam_solution: Callable[..., Solution],
+) -> None:
+    contact = evaluate(beam_solution(centre=250.0, force=320.0)).contact("overlap")
+
+    assert contact.resultant == pytest.approx([0.0, 320.0, 0.0], abs=ROUND_OFF)
+    assert contact.force == pytest.approx(320.0, rel=ROUND_OFF)
+    assert contact.centre == pytest.approx(250.0, rel=ROUND_OFF)  # Hertz's profile is symmetric
+
+
+def test_contact_edges_are_global_coordinates(beam_solution: Callable[..., Solution]) -> None:
+    contact = evaluate(beam_solution(centre=250.0, half_width=12.0)).contact("overlap")
+
+    # stations every 0.25 mm: (spacing)^2 / half width
+    assert np.ravel(contact.edges) == pytest.approx([238.0, 262.0], abs=0.25**2 / 12.0)
+    assert contact.edges_outer == contact.edges
+
+
+def test_penetration_is_the_largest_overlap(beam_solution: Callable[..., Solution]) -> None:
+    contact = evaluate(beam_solution(half_width=12.0, force=320.0)).contact("overlap")
+
+    largest_pressure = 2.0 * 320.0 / (np.pi * 12.0 * 15.0)
+    assert contact.penetration == pytest.approx(largest_pressure / 1e6, rel=1e-6)
+
+
+def test_without_contact_there_is_no_centre_and_no_edge(
+    beam_scene: Scene, beam_solution: Callable[..., Solution]
+) -> None:
+    solution = beam_solution()
+    zero = np.zeros_like(solution.contact_points("overlap").force)
+    apart = replace(
+        solution.contact_points("overlap"), force=zero, middle=zero, outer=zero, mean=zero, gap=zero + 0.5
+    )
+
+    contact = evaluate(replace(solution, contact=apart)).contact("overlap")
+
+    assert (contact.force, contact.centre, contact.edges, contact.penetration) == (0.0, None, (), 0.0)
+
+
+@pytest.mark.parametrize("rod", ["lower", "upper"])
+def test_resultants_from_equilibrium_are_those_of_the_closed_form(
+    rod: str, beam_solution: Callable[..., Solution]
+) -> None:
+    quantities = evaluate(beam_solution()).rod(rod)
+
+    # shear jumps at the load and at contact points; there the two conventions for the value may differ
+    smooth = np.abs(quantities.station - 166.67) > 1.0
+    smooth &= (quantities.station > 100.0) if rod == "upper" else (quantities.station < 200.0)
+    assert quantities.equilibrium[2][smooth] == pytest.approx(quantities.stress[2][smooth], rel=ROUND_OFF)
+    assert quantities.moment == pytest.approx(quantities.stress[3], abs=ROUND_OFF * 1e5)
+    assert stress_residual(quantities) < ROUND_OFF
+
+
+def test_clamp_moments_and_bending_stress(beam_solution: Callable[..., Solution]) -> None:
+    quantities = evaluate(beam_solution(centre=250.0, force=320.0))
+
+    # lower: contact pushes down 250 mm from the clamp; its top is in tension there, so M1 > 0
+    lower = quantities.rod("lower")
+    assert lower.end_moment_equilibrium == pytest.approx(320.0 * 250.0)
+    # upper: load 133.33 mm and contact 250 mm from the clamp at X = 500
+    upper = quantities.rod("upper")
+    moment = 1000.0 * 133.33 - 320.0 * 250.0
+    assert upper.end_moment_equilibrium == pytest.approx(moment)
+    assert upper.end_moment_stress == pytest.approx(moment)
+    assert upper.max_bending_stress == pytest.approx(moment / 562.5)
+
+
+def test_deflection_is_sampled_at_both_ends_and_the_element_borders(
+    beam_scene: Scene, beam_solution: Callable[..., Solution]
+) -> None:
+    upper = evaluate(beam_solution()).rod("upper")
+
+    assert (upper.station[0], upper.station[-1]) == (0.0, 300.0)
+    assert all(np.isclose(upper.station, border).any() for border in beam_scene.rod("upper").element_borders)
+    assert np.all(np.diff(upper.station) > 0.0)
+    assert upper.position[:, 0] == pytest.approx([200.0, 15.0, 0.0])
+    assert upper.displacement.shape == (3, len(upper.station))
+    assert upper.displacement[:, -1] == pytest.approx([0.0, 0.0, 0.0])
+
+
+def test_further_stations_are_added_once(beam_solution: Callable[..., Solution]) -> None:
+    solution = beam_solution()
+    rod = solution.scene.rod("lower")
+
+    station = evaluate(solution, {"lower": np.array([0.0, 12.34, 150.0])}).rod("lower").station
+
+    assert len(station) == len(default_stations(rod)) + 1
+
+
+def test_surface_stress_is_that_of_bending(beam_solution: Callable[..., Solution]) -> None:
+    top_near_the_clamp = np.array([[0.0], [7.5], [10.0]])
+
+    stress = stress_s(beam_solution(centre=250.0, force=320.0), "lower", top_near_the_clamp)
+
+    assert stress == pytest.approx([320.0 * 240.0 / 562.5])
+
+
+def test_equilibrium_residual_vanishes_for_a_solution_in_equilibrium(
+    beam_solution: Callable[..., Solution],
+) -> None:
+    assert equilibrium_residual(beam_solution()) < ROUND_OFF
+
+
+def test_equilibrium_residual_shows_a_wrong_reaction(beam_solution: Callable[..., Solution]) -> None:
+    class OneNewtonShort(type(beam_solution())):  # type: ignore[misc]
+        def reaction(self, rod: str, end: str) -> Array:
+            return super().reaction(rod, end) - np.array([0.0, 1.0, 0.0, 0.0, 0.0, 0.0])
+
+    right = beam_solution()
+    wrong = OneNewtonShort(right.scene, right.contact)
+
+    assert equilibrium_residual(wrong) == pytest.approx(1.0 / 1000.0)
+
+
+class HeldBothEnds:
+    """A clamped-clamped beam of length 200 mm under 80 N down in its middle: reactions P/2 and P L / 8."""
+
+    outcome = "converged"
+
+    def __init__(self) -> None:
+        rod = Rod(
+            "beam",
+            Line((0.0, 0.0, 0.0), (200.0, 0.0, 0.0), (0.0, 1.0, 0.0)),
+            Rectangle(10.0, 10.0),
+            Material(200_000.0, 0.3),
+            (0.0, 200.0),
+        )
+        clamps = (Clamp("beam", "start"), Clamp("beam", "end"))
+        self.scene = Scene("held", (rod,), clamps, (SectionForce("beam", 100.0, (0.0, -80.0, 0.0)),), ())
+
+    def reaction(self, rod: str, end: str) -> Array:
+        return np.array([0.0, 40.0, 0.0, 0.0, 0.0, 2000.0 if end == "start" else -2000.0])
+
+
+def test_a_rod_held_at_both_ends_takes_the_reaction_into_its_equilibrium() -> None:
+    solution = HeldBothEnds()
+
+    moment = equilibrium_resultants(solution, solution.scene.rods[0], np.array([0.0, 50.0, 100.0, 200.0]))[3]
+
+    # M1 > 0 where the top is in tension: + P L / 8 at both clamps, - P L / 8 under the load, 0 half way
+    assert moment == pytest.approx([2000.0, 0.0, -2000.0, 2000.0], abs=ROUND_OFF * 2000.0)
+    assert equilibrium_residual(solution) < ROUND_OFF
+
+
+def test_all_six_resultants_of_a_tip_force_in_local_components() -> None:
+    # a rod along Z whose e2 is X, so e1 = e2 x t = X x Z = -Y
+    rod = Rod(
+        "post",
+        Line((1.0, 2.0, 3.0), (1.0, 2.0, 103.0), (1.0, 0.0, 0.0)),
+        Rectangle(5.0, 10.0),
+        Material(70_000.0, 0.3),
+        (0.0, 100.0),
+    )
+    tip = SectionForce("post", 100.0, (3.0, 5.0, 7.0))
+
+    class Held:
+        scene = Scene("post", (rod,), (Clamp("post", "start"),), (tip,), ())
+
+    resultants = equilibrium_resultants(Held(), rod, np.array([0.0, 40.0, 100.0]))
+
+    axial, shear_1, shear_2, moment_1, moment_2, torque = resultants
+    assert axial == pytest.approx([7.0, 7.0, 7.0])
+    assert shear_1 == pytest.approx([-5.0, -5.0, -5.0])
+    assert shear_2 == pytest.approx([3.0, 3.0, 3.0])
+    arm = np.array([100.0, 60.0, 0.0])
+    assert moment_1 == pytest.approx(-3.0 * arm)  # (arm t) x (Q2 e2) = -arm Q2 e1
+    assert moment_2 == pytest.approx(-5.0 * arm)  # (arm t) x (Q1 e1) = +arm Q1 e2
+    assert torque == pytest.approx([0.0, 0.0, 0.0])
+
+
+def test_every_quantity_has_a_unit_and_a_definition_in_words() -> None:
+    dimensionless = {"equilibrium_residual", "stress_residual"}
+
+    for name, definition in DEFINITIONS.items():
+        assert definition.text.endswith("."), name
+        assert (definition.unit == "") == (name in dimensionless), name
