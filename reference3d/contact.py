@@ -1,0 +1,168 @@
+"""Frictionless node-to-surface penalty contact, reduced to the nodes of the first face of every pair.
+
+A node i with tributary area A_i and gap d_i (the other face is interpolated opposite it) carries the force
+F_i = c_n A_i max(-d_i, 0). With the rods condensed onto the contact nodes, d = d0 + C F, so that F solves the
+linear complementarity problem
+
+    F >= 0,   w = d0 + (C + diag(1 / (c_n A))) F >= 0,   F^T w = 0.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import cho_factor, cho_solve
+from scipy.sparse import csc_array
+
+from reference3d.frames import face_frame, pair_overlap
+from reference3d.quadratic import line_nodes, locate, nodal_weights, shape_functions
+
+if TYPE_CHECKING:
+    from cases.scene import ContactPair, Scene
+    from reference3d.grading import Borders
+
+Array = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+
+# block pivoting steps without progress before single pivoting takes over (Judice and Pires 1994)
+PATIENCE = 5
+
+
+@dataclass(frozen=True)
+class ContactNodes:
+    """Nodes of the first face of a pair inside the overlap, a grid along s and across.
+
+    Attributes
+    ----------
+    station, lateral : coordinates of the grid on the first face, mm, shapes (n_s,), (n_lateral,)
+    area : tributary areas, mm^2, shape (n_s, n_lateral)
+    first, second : rows of the normal displacement against n_c at the node and along n_c opposite it, so that
+        d = g + first @ u_1 + second @ u_2, shape (n_s n_lateral, unknowns of the rod)
+    """
+
+    station: Array
+    lateral: Array
+    area: Array
+    first: csc_array
+    second: csc_array
+
+
+@dataclass(frozen=True)
+class Complementarity:
+    """Solution of the complementarity problem.
+
+    Attributes
+    ----------
+    force : F, N, shape (n,)
+    outcome : 'converged' or 'cycling'
+    steps : active sets tried
+    """
+
+    force: Array
+    outcome: str
+    steps: int
+
+
+def contact_nodes(
+    scene: Scene, pair: ContactPair, borders: dict[str, Borders], symmetric: bool
+) -> ContactNodes:
+    """Contact nodes of a pair on meshes with the given element borders.
+
+    Parameters
+    ----------
+    borders : of each rod, by name
+    symmetric : whether they are those of the halves x >= 0
+    """
+    overlap = pair_overlap(scene, pair)
+    first, second = (face_frame(scene.rod(side.rod), side.face) for side in (pair.first, pair.second))
+    own = borders[pair.first.rod]
+    across = own.x if first.lateral_axis == 0 else own.y
+    station, along_weight = _inside(own.s, *overlap.first[0])
+    lateral, across_weight = _inside(across, max(overlap.first[1][0], across[0]), overlap.first[1][1])
+    points = np.stack([np.repeat(station, len(lateral)), np.tile(lateral, len(station))])
+    opposite = overlap.matrix @ points + overlap.shift[:, None]
+    if symmetric:  # rods with opposite tangents have opposite x
+        opposite[1] = np.abs(opposite[1])
+    return ContactNodes(
+        station=station,
+        lateral=lateral,
+        area=np.outer(along_weight, across_weight),
+        first=_face_rows(own, first.normal_axis, first.side, -float(first.side), points),
+        second=_face_rows(
+            borders[pair.second.rod], second.normal_axis, second.side, -float(second.side), opposite
+        ),
+    )
+
+
+def _inside(borders: Array, start: float, end: float) -> tuple[Array, Array]:
+    nodes, weights = line_nodes(borders), nodal_weights(borders, start, end)
+    used = weights > 0.0
+    return nodes[used], weights[used]
+
+
+def _face_rows(borders: Borders, normal_axis: int, side: int, sign: float, points: Array) -> csc_array:
+    """Normal displacement of a face, times `sign`, interpolated at (s, lateral); shape (n, unknowns)."""
+    n_x, n_y, n_s = (2 * len(axis) - 1 for axis in (borders.x, borders.y, borders.s))
+    along, xi_along = locate(borders.s, points[0])
+    across, xi_across = locate(borders.x if normal_axis == 1 else borders.y, points[1])
+    plane = 2 * along + np.arange(3)[:, None]
+    line = 2 * across + np.arange(3)[:, None]
+    if normal_axis == 1:
+        node = (n_y - 1 if side > 0 else 0) * n_x + line
+    else:
+        node = line * n_x + (n_x - 1 if side > 0 else 0)
+    unknown = 3 * (plane[:, None] * (n_x * n_y) + node[None, :]) + normal_axis
+    value = sign * shape_functions(xi_along)[:, None] * shape_functions(xi_across)[None, :]
+    row = np.broadcast_to(np.arange(points.shape[1]), value.shape)
+    rows = csc_array(
+        (value.ravel(), (row.ravel(), unknown.ravel())), shape=(points.shape[1], 3 * n_x * n_y * n_s)
+    )
+    rows.data[np.abs(rows.data) < 1e-13] = 0.0
+    rows.eliminate_zeros()
+    return rows
+
+
+def solve_complementarity(matrix: Array, offset: Array, active: NDArray[np.bool_]) -> Complementarity:
+    """F >= 0, w = offset + matrix F >= 0, F^T w = 0 for a symmetric positive definite matrix.
+
+    Block principal pivoting: all nodes of the wrong sign change sides at once; when that stops making progress,
+    only the last of them does, which ends for every positive definite matrix (J. J. Judice, F. M. Pires, Computers
+    and Operations Research 21 (1994) 587-596).
+
+    Parameters
+    ----------
+    active : nodes assumed in contact at first, shape (n,)
+    """
+    active = active.copy()
+    best, patience = len(offset) + 1, PATIENCE
+    limit = 20 + 2 * len(offset)
+    force = np.zeros(len(offset))
+    for step in range(1, limit + 1):
+        force = np.zeros(len(offset))
+        if active.any():
+            block = matrix[np.ix_(active, active)]
+            force[active] = cho_solve(cho_factor(block, lower=True), -offset[active])
+        w = offset + matrix @ force
+        w[active] = 0.0
+        # signs are certain only beyond round-off
+        wrong = np.flatnonzero(
+            (force < -1e-12 * np.abs(force).max(initial=0.0)) | (w < -1e-12 * np.abs(offset).max(initial=0.0))
+        )
+        if len(wrong) == 0:
+            return Complementarity(np.maximum(force, 0.0), "converged", step)
+        if len(wrong) < best:
+            best, patience = len(wrong), PATIENCE
+        else:
+            patience -= 1
+        changing = wrong if patience >= 0 else wrong[-1:]
+        active[changing] = ~active[changing]
+    return Complementarity(np.maximum(force, 0.0), "cycling", limit)
+
+
+def near_contact(station: Array, touched: Array, margin: float) -> NDArray[np.bool_]:
+    """Which stations lie within a margin of one that is touched, shape (n,); all in mm."""
+    distance = np.abs(station[:, None] - touched).min(axis=1, initial=np.inf)
+    return np.asarray(distance <= margin)

@@ -1,0 +1,107 @@
+"""Displacement field of a rod of 27-node boxes: its value, its stress and the integrals of its stress."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from reference3d.elasticity import lame_parameters
+from reference3d.grading import Borders
+from reference3d.quadratic import Side, locate, shape_derivatives, shape_functions
+
+if TYPE_CHECKING:
+    from cases.scene import Material
+
+Array = NDArray[np.float64]
+
+SIDES: tuple[Side, Side] = ("left", "right")
+
+
+@dataclass(frozen=True)
+class Field:
+    """Displacement of one rod in its local frame, for the full section.
+
+    Attributes
+    ----------
+    borders : element borders, mm
+    nodal : (u, v, w) at the nodes, mm, shape (2 n_s + 1, 2 n_y + 1, 2 n_x + 1, 3)
+    """
+
+    borders: Borders
+    nodal: Array
+
+
+def mirrored(field: Field) -> Field:
+    """The field of the full section from that of the half x >= 0, symmetric about x = 0."""
+    borders = field.borders
+    opposite = field.nodal[:, :, :0:-1] * np.array([-1.0, 1.0, 1.0])
+    x = np.concatenate([-borders.x[:0:-1], borders.x])
+    return Field(Borders(x, borders.y, borders.s), np.concatenate([opposite, field.nodal], axis=2))
+
+
+def _sample(field: Field, points: Array, sides: tuple[Side, Side, Side]) -> tuple[Array, Array]:
+    """Displacement, shape (3, n), and its gradient du_a/dx_b, shape (3, 3, n), from one of the elements there."""
+    axes = (field.borders.x, field.borders.y, field.borders.s)
+    values, derivatives, nodes = [], [], []
+    for axis, coordinate, side in zip(axes, points, sides, strict=True):
+        element, xi = locate(axis, coordinate, side)
+        length = axis[element + 1] - axis[element]
+        values.append(shape_functions(xi))
+        derivatives.append(shape_derivatives(xi) * (2.0 / length))
+        nodes.append(2 * element + np.arange(3)[:, None])
+    local = field.nodal[nodes[2][:, None, None], nodes[1][None, :, None], nodes[0][None, None, :]]
+    displacement = np.einsum("kjina,in,jn,kn->an", local, *values, optimize=True)
+    gradient = np.stack(
+        [
+            np.einsum(
+                "kjina,in,jn,kn->an",
+                local,
+                *(derivatives[a] if a == b else values[a] for a in range(3)),
+                optimize=True,
+            )
+            for b in range(3)
+        ],
+        axis=1,
+    )
+    return displacement, gradient
+
+
+def displacement(field: Field, points: Array) -> Array:
+    """Displacement in the local frame at (x, y, s), mm, shape (3, n)."""
+    return _sample(field, points, ("left", "left", "left"))[0]
+
+
+def stress(field: Field, material: Material, points: Array) -> Array:
+    """Stress at (x, y, s): xx, yy, ss, ys, xs, xy, MPa, shape (6, n); where elements meet, their mean."""
+    gradient = np.mean(
+        [_sample(field, points, (in_x, in_y, in_s))[1] for in_x in SIDES for in_y in SIDES for in_s in SIDES],
+        axis=0,
+    )
+    lam, mu = lame_parameters(material)
+    strain = 0.5 * (gradient + gradient.transpose(1, 0, 2))
+    tensor = 2.0 * mu * strain + lam * np.einsum("aan->n", strain) * np.eye(3)[:, :, None]
+    return np.stack([tensor[0, 0], tensor[1, 1], tensor[2, 2], tensor[1, 2], tensor[0, 2], tensor[0, 1]])
+
+
+def section_resultants(field: Field, material: Material, station: Array) -> Array:
+    """N, Q1, Q2, M1, M2, T (`reports.solution`) by Gauss points in every element of the section, shape (6, n).
+
+    Three points along each axis integrate the stress of a 27-node box exactly.
+    """
+    root, weight = np.polynomial.legendre.leggauss(3)
+    places, weights = [], []
+    for axis in (field.borders.x, field.borders.y):
+        half = 0.5 * np.diff(axis)
+        places.append((0.5 * (axis[1:] + axis[:-1])[:, None] + half[:, None] * root).ravel())
+        weights.append((half[:, None] * weight).ravel())
+    x, y = (place.ravel() for place in np.meshgrid(*places, indexing="ij"))
+    area = np.outer(*weights).ravel()
+    station = np.asarray(station, dtype=np.float64)
+    points = np.stack([np.tile(x, len(station)), np.tile(y, len(station)), np.repeat(station, len(x))])
+    _, _, ss, ys, xs, _ = stress(field, material, points).reshape(6, len(station), len(x))
+    return np.stack(
+        [ss @ area, xs @ area, ys @ area, ss @ (area * y), -ss @ (area * x), (ys * x - xs * y) @ area]
+    )

@@ -1,0 +1,134 @@
+"""Where the borders of a rod's elements lie: graded towards clamps, loads and the ends of contact zones.
+
+A rod is first divided into coarse cells, whose lengths grow linearly away from the places that need short ones.
+Refinement k divides every coarse cell into k equal parts along each axis, so that meshes of different k are
+systematically refined: their element sizes are everywhere in the ratio of their k.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from reference3d.frames import pair_overlap
+
+if TYPE_CHECKING:
+    from cases.scene import Rod, Scene
+
+Array = NDArray[np.float64]
+
+# lengths of coarse cells as multiples of the smaller side of the section
+CLAMP_CELL = 0.15
+LOAD_CELL = 0.5
+ZONE_END_CELL = 0.15
+ZONE_CELL = 1.0 / 3.0
+LARGEST_CELL = 1.5
+SECTION_CELL = 0.5
+GROWTH = 0.5  # increase of the cell length per distance
+
+
+@dataclass(frozen=True)
+class Borders:
+    """Element borders of one rod along x, y and s, mm."""
+
+    x: Array
+    y: Array
+    s: Array
+
+
+@dataclass(frozen=True)
+class _Zone:
+    start: float
+    end: float
+    size: float
+
+
+def rod_borders(scene: Scene, rod: Rod, refinement: int, symmetric: bool) -> Borders:
+    """Element borders of a rod.
+
+    Parameters
+    ----------
+    refinement : k, elements along each axis of a coarse cell
+    symmetric : True for the half x >= 0 alone
+    """
+    side = min(rod.section.width, rod.section.height)
+    breaks: dict[float, float] = {0.0: LARGEST_CELL * side, rod.length: LARGEST_CELL * side}
+    across: dict[str, list[float]] = {"x": [], "y": []}
+    zones: list[_Zone] = []
+
+    def add(position: float, size: float) -> None:
+        near = next((place for place in breaks if abs(place - position) < 1e-7 * rod.length), position)
+        breaks[near] = min(size, breaks.get(near, np.inf))
+
+    for support in scene.supports:
+        if support.rod == rod.name:
+            add(0.0 if support.end == "start" else rod.length, CLAMP_CELL * side)
+    for load in scene.loads:
+        if load.rod == rod.name:
+            add(load.position, LOAD_CELL * side)
+    for pair in scene.contacts:
+        for face, rectangle in zip(
+            (pair.first, pair.second),
+            (pair_overlap(scene, pair).first, pair_overlap(scene, pair).second),
+            strict=True,
+        ):
+            if face.rod != rod.name:
+                continue
+            sections = [scene.rod(name).section for name in (pair.first.rod, pair.second.rod)]
+            smaller = min(min(section.width, section.height) for section in sections)
+            for place in rectangle[0]:
+                add(place, ZONE_END_CELL * smaller)
+            zones.append(_Zone(*rectangle[0], ZONE_CELL * smaller))
+            across["x" if face.face in ("top", "bottom") else "y"] += rectangle[1]
+    return Borders(
+        x=_across(rod.section.width, across["x"], SECTION_CELL * side, refinement, symmetric),
+        y=_across(rod.section.height, across["y"], SECTION_CELL * side, refinement, False),
+        s=_along(breaks, zones, LARGEST_CELL * side, refinement),
+    )
+
+
+def _along(breaks: dict[float, float], zones: list[_Zone], largest: float, refinement: int) -> Array:
+    places = sorted(breaks)
+    parts = [np.array(places[:1])]
+    for start, end in zip(places, places[1:], strict=False):
+        middle = 0.5 * (start + end)
+        cap = min([zone.size for zone in zones if zone.start < middle < zone.end], default=largest)
+        parts.append(_segment(start, end, breaks[start], breaks[end], cap, refinement)[1:])
+    return np.concatenate(parts)
+
+
+def _segment(start: float, end: float, at_start: float, at_end: float, cap: float, refinement: int) -> Array:
+    """Borders of one segment: cell length min(at_start + g d, at_end + g d', cap), rounded down to fit."""
+    place = np.linspace(start, end, 2001)
+    size = np.minimum(np.minimum(at_start + GROWTH * (place - start), at_end + GROWTH * (end - place)), cap)
+    density = 1.0 / size
+    count = np.concatenate([[0.0], np.cumsum(0.5 * (density[1:] + density[:-1]) * np.diff(place))])
+    cells = max(1, int(np.ceil(count[-1] - 1e-6)))
+    borders = np.interp(np.linspace(0.0, count[-1], cells + 1), count, place)
+    borders[0], borders[-1] = start, end
+    return _divide(borders, refinement)
+
+
+def _divide(borders: Array, parts: int) -> Array:
+    """Borders of cells each divided into equal parts."""
+    at = np.arange(parts * (len(borders) - 1) + 1) / parts
+    return np.asarray(np.interp(at, np.arange(len(borders)), borders))
+
+
+def _across(extent: float, inner: list[float], size: float, refinement: int, half: bool) -> Array:
+    """Borders over a width or height: uniform between the borders of contact, always one in the middle."""
+    candidates = sorted([-0.5 * extent, 0.0, 0.5 * extent, *inner])
+    places = [candidates[0]]
+    for place in candidates[1:]:
+        if place - places[-1] > 1e-7 * extent:
+            places.append(place)
+    places[-1] = 0.5 * extent
+    parts = [np.array(places[:1])]
+    for start, end in zip(places, places[1:], strict=False):
+        cells = max(1, int(np.ceil((end - start) / size - 1e-6)))
+        parts.append(np.linspace(start, end, cells * refinement + 1)[1:])
+    borders = np.concatenate(parts)
+    return borders[borders >= 0.0] if half else borders

@@ -1,0 +1,491 @@
+"""Solve a scene as a 3D solid and answer for it: displacement, stress, resultants, reactions, contact.
+
+`Solution` has the shape that `reports.solution` asks for. All answers are for the full section, also where
+the scene's symmetry plane halved the computation.
+"""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import csc_array, hstack
+
+from cases.scene import ContactPair, End, Rod, Scene, SceneError
+from reference3d.contact import ContactNodes, contact_nodes, near_contact, solve_complementarity
+from reference3d.elasticity import LayeredStiffness, layered_stiffness
+from reference3d.factor import LayeredFactor, compliance, factorise
+from reference3d.factor import solve as solve_layers
+from reference3d.field import Field, displacement, mirrored, section_resultants, stress
+from reference3d.frames import face_frame, is_symmetric, pair_overlap, rod_frame
+from reference3d.grading import Borders, rod_borders
+from reference3d.mesh import box_mesh
+from reference3d.quadratic import line_nodes, nodal_weights
+
+Array = NDArray[np.float64]
+BoolArray = NDArray[np.bool_]
+IntArray = NDArray[np.int64]
+
+DEFAULT_REFINEMENT = 2
+# contact is looked for where the coarse mesh found it and this many section sides around
+MARGIN = 0.5
+# largest force left over, relative to the largest internal force, that a solution may have
+RESIDUAL_TOLERANCE = 1e-8
+
+
+@dataclass(frozen=True)
+class Cost:
+    """unknowns : carried in the solution; setup, solve : wall-clock seconds, disjoint."""
+
+    unknowns: int
+    setup_seconds: float
+    solve_seconds: float
+
+
+@dataclass(frozen=True)
+class ContactPoints:
+    """Nodes of the first face of a pair (`reports.solution.ContactPoints`).
+
+    position, normal : global, mm, shape (3, n); gap : d, mm, shape (n,); force : N, shape (n,)
+    """
+
+    position: Array
+    normal: Array
+    gap: Array
+    force: Array
+
+
+@dataclass(frozen=True)
+class ContactProfile:
+    """Nodal pressure along a pair (`reports.solution.ContactProfile`).
+
+    The mean is over the full width of the first face; the outer border is that of the strip where the faces
+    overlap. position : global, mm, shape (3, n); the others MPa or mm, shape (n,)
+    """
+
+    station: Array
+    position: Array
+    middle: Array
+    mean: Array
+    outer: Array
+
+
+@dataclass(frozen=True)
+class RodResult:
+    """What is kept of one rod: displacement field and nodal support forces in the local frame.
+
+    reaction : force and moment on the rod about the section's centre at its start and end, global, shape (2, 6)
+    """
+
+    rod: Rod
+    field: Field
+    reaction: Array
+
+
+@dataclass(frozen=True)
+class PairResult:
+    """What is kept of one contact pair, on the full grid of contact nodes.
+
+    station, lateral : mm, shapes (n_s,), (n_lateral,); area, gap, shape (n_s, n_lateral)
+    """
+
+    pair: ContactPair
+    station: Array
+    lateral: Array
+    area: Array
+    gap: Array
+
+    @property
+    def pressure(self) -> Array:
+        """p_n, MPa, shape (n_s, n_lateral)."""
+        return np.asarray(self.pair.penalty * np.maximum(-self.gap, 0.0))
+
+
+@dataclass(frozen=True)
+class Solution:
+    """A scene solved as a 3D solid; `reports.solution.Solution` describes the common part.
+
+    Attributes
+    ----------
+    residual : largest nodal force out of balance relative to the largest internal nodal force
+    representative_size : cube root of the mean element volume, mm (h of ASME V&V 20)
+    refinement : k of `grading`
+    """
+
+    scene: Scene
+    outcome: str
+    contact_solutions: int
+    strain_energy: float
+    cost: Cost
+    residual: float
+    representative_size: float
+    refinement: int
+    rods: dict[str, RodResult]
+    pairs: dict[str, PairResult]
+
+    def displacement(self, rod: str, station: Array) -> Array:
+        """Displacement of the centre line at arc lengths `station`, global, mm, shape (3, n)."""
+        station = np.asarray(station, dtype=np.float64)
+        points = np.stack([np.zeros_like(station), np.zeros_like(station), station])
+        axes = rod_frame(self.rods[rod].rod).axes
+        return np.asarray(axes.T @ displacement(self.rods[rod].field, points))
+
+    def stress(self, rod: str, points: Array) -> Array:
+        """Stress in the local frame at (x, y, s): xx, yy, ss, ys, xs, xy, MPa, shape (6, n)."""
+        return stress(self.rods[rod].field, self.rods[rod].rod.material, np.asarray(points, dtype=np.float64))
+
+    def section_resultants(self, rod: str, station: Array) -> Array:
+        """N, Q1, Q2, M1, M2, T of the finite element stress, N and N mm, shape (6, n)."""
+        return section_resultants(self.rods[rod].field, self.rods[rod].rod.material, station)
+
+    def reaction(self, rod: str, end: End) -> Array:
+        """Force and moment of the support on the rod, global, shape (6,); zero where there is no support."""
+        return self.rods[rod].reaction[0 if end == "start" else 1]
+
+    def contact_points(self, pair: str) -> ContactPoints:
+        """State of every contact node of a pair."""
+        result = self.pairs[pair]
+        s, lateral = (grid.ravel() for grid in np.meshgrid(result.station, result.lateral, indexing="ij"))
+        normal = face_frame(self.scene.rod(result.pair.first.rod), result.pair.first.face).normal
+        return ContactPoints(
+            position=self._on_first_face(result.pair, s, lateral),
+            normal=np.repeat(normal[:, None], len(s), axis=1),
+            gap=result.gap.ravel(),
+            force=(result.area * result.pressure).ravel(),
+        )
+
+    def contact_profile(self, pair: str) -> ContactProfile:
+        """Nodal pressure along the zone; stations where the second face is missing have none."""
+        result = self.pairs[pair]
+        pressure, lateral = result.pressure, result.lateral
+        across = nodal_weights(lateral[::2], float(lateral[0]), float(lateral[-1]))
+        width = 2.0 * face_frame(self.scene.rod(result.pair.first.rod), result.pair.first.face).half_width
+        middle = int(np.argmin(np.abs(lateral)))
+        inside = abs(lateral[middle]) < 1e-9 * width
+        station = result.station
+        rows = np.stack(
+            [
+                pressure[:, middle] if inside else np.zeros(len(station)),
+                pressure @ across / width,
+                np.maximum(pressure[:, 0], pressure[:, -1]),
+            ]
+        )
+        tolerance = 1e-9 * self.scene.rod(result.pair.first.rod).length
+        before = (
+            np.array([result.pair.zone[0]]) if station[0] - result.pair.zone[0] > tolerance else np.zeros(0)
+        )
+        after = (
+            np.array([result.pair.zone[1]]) if result.pair.zone[1] - station[-1] > tolerance else np.zeros(0)
+        )
+        # a face that ends inside the zone ends its pressure in a step
+        station = np.concatenate(
+            [before, station[:1][: len(before)], station, station[-1:][: len(after)], after]
+        )
+        rows = np.pad(rows, ((0, 0), (2 * len(before), 2 * len(after))))
+        return ContactProfile(
+            station,
+            self._on_first_face(result.pair, station, np.zeros_like(station)),
+            rows[0],
+            rows[1],
+            rows[2],
+        )
+
+    def _on_first_face(self, pair: ContactPair, station: Array, lateral: Array) -> Array:
+        rod = self.scene.rod(pair.first.rod)
+        face = face_frame(rod, pair.first.face)
+        corner = rod_frame(rod).origin + face.offset * face.normal
+        return np.asarray(corner[:, None] + np.outer(face.tangent, station) + np.outer(face.lateral, lateral))
+
+
+@dataclass(frozen=True)
+class _Body:
+    """A discretised and factorised rod.
+
+    free : unknowns of a plane not zero by symmetry; fixed, load : by plane, shape (n_planes, plane size)
+    """
+
+    rod: Rod
+    borders: Borders
+    stiffness: LayeredStiffness
+    factor: LayeredFactor
+    free: IntArray
+    fixed: BoolArray
+    load: Array
+
+    @property
+    def free_everywhere(self) -> IntArray:
+        """`free` in every plane."""
+        planes, size = self.fixed.shape
+        return (size * np.arange(planes)[:, None] + self.free).ravel()
+
+
+def solve(scene: Scene, refinement: int = DEFAULT_REFINEMENT, located: Solution | None = None) -> Solution:
+    """Solve a scene as a 3D solid.
+
+    Parameters
+    ----------
+    refinement : k, elements along each axis of a coarse cell (`grading`); unknowns grow with its third power
+    located : solution of the same scene on a coarser mesh, if there is one, which shows where contact is; solved
+        here on the coarsest mesh if there is none
+
+    Raises
+    ------
+    SceneError
+        if the scene is outside what this solver treats: a rod without a clamp, faces that are not parallel and
+        facing, rods in contact at an angle other than 0 or 90 degrees.
+    ValueError
+        if `refinement` is below 1.
+    """
+    if refinement < 1:
+        raise ValueError(f"refinement: found {refinement}; a whole number of at least 1 is needed")
+    _require_support(scene)
+    begin = time.perf_counter()
+    symmetric = is_symmetric(scene)
+    # contact is located on the coarsest mesh, so that compliance is computed only where it is needed
+    if located is None and refinement > 1 and scene.contacts:
+        located = solve(scene, 1)
+    bodies = {rod.name: _body(scene, rod, refinement, symmetric) for rod in scene.rods}
+    borders = {name: body.borders for name, body in bodies.items()}
+    nodes = [contact_nodes(scene, pair, borders, symmetric) for pair in scene.contacts]
+    ready = time.perf_counter()
+
+    candidates = [_candidates(pair, grid, located) for pair, grid in zip(scene.contacts, nodes, strict=True)]
+    steps = 0
+    while True:
+        forces, outcome, tried = _contact_forces(scene, bodies, nodes, candidates)
+        steps += tried
+        fields, gaps = _respond(scene, bodies, nodes, forces)
+        missed = [~chosen & (gap < 0.0) for chosen, gap in zip(candidates, gaps, strict=True)]
+        if not any(miss.any() for miss in missed):
+            break
+        candidates = [np.ones_like(chosen) for chosen in candidates]
+    return _collect(
+        scene, refinement, symmetric, bodies, nodes, forces, gaps, fields, outcome, steps, (begin, ready)
+    )
+
+
+def _require_support(scene: Scene) -> None:
+    clamped = {support.rod for support in scene.supports}
+    for rod in scene.rods:
+        if rod.name not in clamped:
+            found = f"no clamp on rod '{rod.name}'"
+            raise SceneError(
+                "supports", found, "the 3D reference needs a clamp on every rod, or its stiffness is singular"
+            )
+
+
+def _body(scene: Scene, rod: Rod, refinement: int, symmetric: bool) -> _Body:
+    borders = rod_borders(scene, rod, refinement, symmetric)
+    stiffness = layered_stiffness(box_mesh(borders.x, borders.y, borders.s), borders, rod.material)
+    x, y, s = (line_nodes(axis) for axis in (borders.x, borders.y, borders.s))
+    fixed = np.zeros((len(s), len(y), len(x), 3), dtype=bool)
+    fixed[:, :, 0, 0] = symmetric
+    clamped = {support.end for support in scene.supports if support.rod == rod.name}
+    fixed[0] |= "start" in clamped
+    fixed[-1] |= "end" in clamped
+    in_plane = np.ones((len(y), len(x), 3), dtype=bool)
+    in_plane[:, 0, 0] = not symmetric
+    free = np.flatnonzero(in_plane)
+    load = np.zeros(fixed.shape)
+    area = rod.section.width * rod.section.height
+    weights = np.outer(
+        *(nodal_weights(axis, float(axis[0]), float(axis[-1])) for axis in (borders.y, borders.x))
+    )
+    for section_force in scene.loads:
+        if section_force.rod == rod.name:
+            plane = int(np.argmin(np.abs(s - section_force.position)))
+            load[plane] += weights[:, :, None] / area * (rod_frame(rod).axes @ np.array(section_force.force))
+    reverse = _contact_near_start(scene, rod)
+    return _Body(
+        rod=rod,
+        borders=borders,
+        stiffness=stiffness,
+        factor=factorise(stiffness, free, "start" in clamped, "end" in clamped, reverse),
+        free=free,
+        fixed=fixed.reshape(len(s), -1),
+        load=load.reshape(len(s), -1),
+    )
+
+
+def _contact_near_start(scene: Scene, rod: Rod) -> bool:
+    centres = []
+    for pair in scene.contacts:
+        overlap = pair_overlap(scene, pair)
+        for side, rectangle in ((pair.first, overlap.first), (pair.second, overlap.second)):
+            if side.rod == rod.name:
+                centres.append(0.5 * (rectangle[0][0] + rectangle[0][1]))
+    return bool(centres) and float(np.mean(centres)) < 0.5 * rod.length
+
+
+def _candidates(pair: ContactPair, nodes: ContactNodes, located: Solution | None) -> BoolArray:
+    """Contact nodes that may touch, shape (n_s n_lateral,): near those that do on the coarse mesh."""
+    if located is None:
+        return np.ones(nodes.area.size, dtype=bool)
+    coarse = located.pairs[pair.name]
+    touched = coarse.station[(coarse.pressure > 0.0).any(axis=1)]
+    if len(touched) == 0:
+        return np.zeros(nodes.area.size, dtype=bool)
+    sections = [located.scene.rod(side.rod).section for side in (pair.first, pair.second)]
+    margin = MARGIN * min(min(section.width, section.height) for section in sections)
+    near = near_contact(nodes.station, touched, margin)
+    return np.repeat(near, len(nodes.lateral))
+
+
+def _sides(scene: Scene, nodes: list[ContactNodes], rod: Rod) -> list[csc_array | None]:
+    """For each pair, the rows of the normal displacement of this rod's face, if it is in the pair."""
+    found: list[csc_array | None] = []
+    for pair, grid in zip(scene.contacts, nodes, strict=True):
+        found.append(
+            grid.first if pair.first.rod == rod.name else grid.second if pair.second.rod == rod.name else None
+        )
+    return found
+
+
+def _contact_forces(
+    scene: Scene, bodies: dict[str, _Body], nodes: list[ContactNodes], candidates: list[BoolArray]
+) -> tuple[list[Array], str, int]:
+    """Nodal contact forces of each pair, the outcome of the contact iteration and the active sets it tried."""
+    counts = [int(chosen.sum()) for chosen in candidates]
+    starts = np.concatenate([[0], np.cumsum(counts)])
+    total = int(starts[-1])
+    forces = [np.zeros(grid.area.size) for grid in nodes]
+    if total == 0:
+        return forces, "converged", 0
+    matrix, offset = np.zeros((total, total)), np.zeros(total)
+    for index, (pair, grid, chosen) in enumerate(zip(scene.contacts, nodes, candidates, strict=True)):
+        place = np.arange(starts[index], starts[index + 1])
+        matrix[place, place] += 1.0 / (pair.penalty * grid.area.ravel()[chosen])
+        offset[place] += pair.gap
+    for body in bodies.values():
+        rows, places = [], []
+        for index, side in enumerate(_sides(scene, nodes, body.rod)):
+            if side is not None:
+                rows.append(side.tocsr()[candidates[index]].T)
+                places.append(np.arange(starts[index], starts[index + 1]))
+        if not rows:
+            continue
+        columns = csc_array(hstack([*rows, csc_array(body.load.reshape(-1, 1))]))
+        columns.data[body.fixed.ravel()[columns.indices]] = 0.0
+        columns.eliminate_zeros()
+        columns = columns.tocsr()[body.free_everywhere].tocsc()
+        work = compliance(body.factor, columns)
+        place = np.concatenate(places)
+        matrix[np.ix_(place, place)] += work[:-1, :-1]
+        offset[place] += work[:-1, -1]
+    answer = solve_complementarity(matrix, offset, offset < 0.0)
+    for index, chosen in enumerate(candidates):
+        forces[index][chosen] = answer.force[starts[index] : starts[index + 1]]
+    return forces, answer.outcome, answer.steps
+
+
+def _respond(
+    scene: Scene, bodies: dict[str, _Body], nodes: list[ContactNodes], forces: list[Array]
+) -> tuple[dict[str, tuple[Array, Array]], list[Array]]:
+    """Displacement and force of each body, shape (n_planes, m), and the gaps of each pair."""
+    fields: dict[str, tuple[Array, Array]] = {}
+    gaps = [
+        np.full(grid.area.size, float(pair.gap)) for pair, grid in zip(scene.contacts, nodes, strict=True)
+    ]
+    for name, body in bodies.items():
+        force = body.load.copy()
+        sides = _sides(scene, nodes, body.rod)
+        for side, contact_force in zip(sides, forces, strict=True):
+            if side is not None:
+                force += (side.T @ contact_force).reshape(force.shape)
+        field = np.zeros_like(force)
+        field[:, body.free] = solve_layers(body.factor, np.where(body.fixed, 0.0, force)[:, body.free])
+        for index, side in enumerate(sides):
+            if side is not None:
+                gaps[index] += side @ field.ravel()
+        fields[name] = (field, force)
+    return fields, gaps
+
+
+def _collect(
+    scene: Scene,
+    refinement: int,
+    symmetric: bool,
+    bodies: dict[str, _Body],
+    nodes: list[ContactNodes],
+    forces: list[Array],
+    gaps: list[Array],
+    fields: dict[str, tuple[Array, Array]],
+    outcome: str,
+    steps: int,
+    moments: tuple[float, float],
+) -> Solution:
+    """The solution of the full section from that of the bodies."""
+    rods: dict[str, RodResult] = {}
+    energy, worst, largest, volume, elements, unknowns = 0.0, 0.0, 0.0, 0.0, 0, 0
+    for name, body in bodies.items():
+        displaced, force = fields[name]
+        internal = body.stiffness.apply(displaced)
+        out_of_balance = internal - force
+        worst = max(worst, float(np.abs(out_of_balance[~body.fixed]).max()))
+        largest = max(largest, float(np.abs(internal).max()))
+        energy += (2.0 if symmetric else 1.0) * 0.5 * float(np.vdot(displaced, internal))
+        x, y, s = body.borders.x, body.borders.y, body.borders.s
+        volume += float((x[-1] - x[0]) * (y[-1] - y[0]) * (s[-1] - s[0]))
+        elements += (len(x) - 1) * (len(y) - 1) * (len(s) - 1)
+        unknowns += int((~body.fixed).sum())
+        shape = (2 * len(s) - 1, 2 * len(y) - 1, 2 * len(x) - 1, 3)
+        field = Field(body.borders, displaced.reshape(shape))
+        reaction = np.stack(
+            [_support_reaction(scene, body, out_of_balance.reshape(shape), symmetric, end) for end in (0, -1)]
+        )
+        rods[name] = RodResult(body.rod, mirrored(field) if symmetric else field, reaction)
+    pairs = {}
+    for pair, grid, force, gap in zip(scene.contacts, nodes, forces, gaps, strict=True):
+        pairs[pair.name] = _pair_result(pair, grid, force, gap, symmetric)
+    residual = worst / largest if largest > 0.0 else 0.0
+    if outcome == "converged" and residual > RESIDUAL_TOLERANCE:
+        outcome = f"refused: forces are out of balance by {residual:.1e} of the largest"
+    begin, ready = moments
+    return Solution(
+        scene=scene,
+        outcome=outcome,
+        contact_solutions=steps,
+        strain_energy=energy,
+        cost=Cost(unknowns, ready - begin, time.perf_counter() - ready),
+        residual=residual,
+        representative_size=(volume / elements) ** (1.0 / 3.0),
+        refinement=refinement,
+        rods=rods,
+        pairs=pairs,
+    )
+
+
+def _support_reaction(scene: Scene, body: _Body, nodal: Array, symmetric: bool, end: int) -> Array:
+    """Force and moment about the section's centre that a clamp exerts on the rod, global, shape (6,)."""
+    clamped = {support.end for support in scene.supports if support.rod == body.rod.name}
+    if ("start" if end == 0 else "end") not in clamped:
+        return np.zeros(6)
+    force = nodal[end]
+    x, y = line_nodes(body.borders.x), line_nodes(body.borders.y)
+    if symmetric:
+        # twice the half: what acts across the plane is internal, what acts along x cancels
+        force = force * np.array([0.0, 2.0, 2.0])
+        x = np.zeros_like(x)
+    arm = np.zeros_like(force)
+    arm[..., 0], arm[..., 1] = x, y[:, None]
+    local = np.stack([force.sum(axis=(0, 1)), np.cross(arm, force).sum(axis=(0, 1))])
+    return np.asarray((local @ rod_frame(body.rod).axes).ravel())
+
+
+def _pair_result(
+    pair: ContactPair, nodes: ContactNodes, force: Array, gap: Array, symmetric: bool
+) -> PairResult:
+    # in contact the gap follows from the force, free of the cancellation in the difference of displacements
+    shape = nodes.area.shape
+    area = nodes.area
+    gap = np.where(force > 0.0, -force / (pair.penalty * area.ravel()), np.maximum(gap, 0.0)).reshape(shape)
+    lateral = nodes.lateral
+    if symmetric:
+        half = area.copy()
+        half[:, 0] *= 2.0
+        area = np.concatenate([half[:, :0:-1], half], axis=1)
+        gap = np.concatenate([gap[:, :0:-1], gap], axis=1)
+        lateral = np.concatenate([-lateral[:0:-1], lateral])
+    return PairResult(pair, nodes.station, lateral, area, gap)
