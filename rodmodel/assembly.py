@@ -11,7 +11,6 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import solve_triangular
 
 from cases.scene import Rectangle, Rod, Scene, SectionForce
 from rodmodel.axial import shape_functions
@@ -19,6 +18,7 @@ from rodmodel.centre_line import frame
 from rodmodel.chain import Chain
 from rodmodel.section import Fields, SectionStiffness, section_functions, section_stiffness
 from rodmodel.stiffness import Element, condensed_element
+from rodmodel.triangular import lower_solve, transposed_solve
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -133,7 +133,7 @@ def functionals_at(assembled: AssembledRod, station: Array, direction: Array) ->
             nodal[element_index : element_index + 2, :, members] += condensed
             continue
         right = part[2:, :, inner].reshape(len(element.bubble_factor), -1)
-        half = solve_triangular(element.bubble_factor, right, lower=True, check_finite=False)
+        half = lower_solve(element.bubble_factor, right)
         condensed[:, :, inner] -= (element.half_coupling.T @ half).reshape(2, n_fields, -1)
         nodal[element_index : element_index + 2, :, members] += condensed
         bubbles.append(
@@ -195,6 +195,6 @@ def coefficients(assembled: AssembledRod, load: Functionals) -> Array:
         halves[index] = halves.get(index, 0.0) + half[:, 0] / root
     for index, element in enumerate(assembled.elements):
         right = halves.get(index, 0.0) - element.half_coupling @ result[index, :2].ravel()
-        bubbles = solve_triangular(element.bubble_factor, right, lower=True, trans=1, check_finite=False)
+        bubbles = transposed_solve(element.bubble_factor, right[:, None])
         result[index, 2:] = bubbles.reshape(-1, n_fields)
     return result

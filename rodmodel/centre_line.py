@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -10,13 +12,16 @@ from cases.scene import Line, Rod
 Array = NDArray[np.float64]
 
 
+@lru_cache(maxsize=1024)
 def frame(line: Line) -> Array:
     """Local frame of a straight line: rows e1, e2, t in global components, shape (3, 3)."""
     tangent = np.subtract(line.end, line.start) / line.length
     up = np.asarray(line.up, dtype=float)
     e2 = up - (up @ tangent) * tangent
     e2 /= np.linalg.norm(e2)
-    return np.array([np.cross(e2, tangent), e2, tangent])
+    axes = np.array([np.cross(e2, tangent), e2, tangent])
+    axes.flags.writeable = False
+    return axes
 
 
 def global_points(rod: Rod, points: Array) -> Array:

@@ -9,9 +9,9 @@ from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import solve_triangular
 
-from rodmodel.stiffness import Element, cholesky
+from rodmodel.stiffness import Element
+from rodmodel.triangular import cholesky, lower_solve, transposed_solve
 
 Array = NDArray[np.float64]
 
@@ -49,7 +49,7 @@ class Chain:
             block = diagonal[node]
             if node > self.first_free:
                 below = elements[node - 1].condensed[n_fields:, :n_fields]
-                link = solve_triangular(self._factors[-1], below.T, lower=True, check_finite=False).T
+                link = lower_solve(self._factors[-1], below.T).T
                 block = block - link @ link.T
                 self._links.append(link)
             self._factors.append(cholesky(block))
@@ -63,7 +63,7 @@ class Chain:
         for index, factor in enumerate(self._factors):
             node = self.first_free + index
             load = loads[node] if index == 0 else loads[node] - self._links[index - 1] @ result[node - 1]
-            result[node] = solve_triangular(factor, load, lower=True, check_finite=False)
+            result[node] = lower_solve(factor, load)
         return np.asarray(result / self._root)
 
     def back_solve(self, half: Array) -> Array:
@@ -74,9 +74,7 @@ class Chain:
             load = half[node]
             if index + 1 < len(self._factors):
                 load = load - self._links[index].T @ result[node + 1]
-            result[node] = solve_triangular(
-                self._factors[index], load, lower=True, trans=1, check_finite=False
-            )
+            result[node] = transposed_solve(self._factors[index], load)
         return np.asarray(result / self._root)
 
     def solve(self, loads: Array) -> Array:

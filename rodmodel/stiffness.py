@@ -11,10 +11,10 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import get_lapack_funcs, solve_triangular
 
 from rodmodel.axial import axial_matrices
 from rodmodel.section import SectionStiffness
+from rodmodel.triangular import cholesky, lower_solve
 
 Array = NDArray[np.float64]
 
@@ -29,10 +29,12 @@ def element_stiffness(length: float, order: int, section: SectionStiffness) -> A
     section : S_ab
     """
     m00, m01, m11 = axial_matrices(order)
-    mixed = np.kron(m01, section.s01)
-    return (
-        np.kron(0.5 * length * m00, section.s00) + mixed + mixed.T + np.kron(2.0 / length * m11, section.s11)
-    )
+    n_axial, n_fields = order + 1, len(section.s00)
+    # Rows (a, i), columns (b, j): the four terms in one product over the pairs of derivatives.
+    axial = np.stack([0.5 * length * m00, m01, m01.T, 2.0 / length * m11]).reshape(4, -1)
+    over_section = np.stack([section.s00, section.s01, section.s01.T, section.s11]).reshape(4, -1)
+    product = (axial.T @ over_section).reshape(n_axial, n_axial, n_fields, n_fields)
+    return product.transpose(0, 2, 1, 3).reshape(n_axial * n_fields, n_axial * n_fields)
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,14 +65,5 @@ def condensed_element(length: float, order: int, section: SectionStiffness) -> E
         stiffness[n_nodal:, n_nodal:],
     )
     factor = cholesky(bubbles)
-    half = solve_triangular(factor, coupling, lower=True, check_finite=False)
+    half = lower_solve(factor, coupling)
     return Element(length, nodal - half.T @ half, factor, half)
-
-
-def cholesky(matrix: Array) -> Array:
-    """Lower Cholesky factor; LinAlgError where the matrix is not positive definite."""
-    (potrf,) = get_lapack_funcs(("potrf",), (matrix,))
-    factor, info = potrf(matrix, lower=True, clean=True)
-    if info != 0:
-        raise np.linalg.LinAlgError(f"stiffness not positive definite at row {info}")
-    return np.asarray(factor)
