@@ -1,0 +1,221 @@
+"""Run cases: the rod model, the 3D reference on three meshes, and everything they are held against.
+
+Every case runs in a process of its own, so that its peak memory can be told and a case that fails, or is killed,
+never stops the others.
+"""
+
+from __future__ import annotations
+
+import multiprocessing
+import resource
+import signal
+import statistics
+import sys
+import time
+import traceback
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from reports.case_comparison import case_comparisons, evaluation_points
+from reports.comparison import Extrapolation
+from reports.quantities import evaluate
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator, Sequence
+    from multiprocessing.connection import Connection
+
+    from cases.case import Case
+    from reports.comparison import Comparison, Extrapolate
+    from reports.quantities import Quantities
+    from reports.solution import Model
+
+    Progress = Callable[[str], None]
+
+# The rod model answers in milliseconds; its seconds are the median of this many runs.
+ROD_REPEATS = 5
+
+
+@dataclass(frozen=True)
+class Run:
+    """One model's answer to a case.
+
+    Attributes
+    ----------
+    level, order : of the rod model; None for the 3D reference
+    total_seconds : wall-clock time from the scene to all quantities
+    peak_memory : largest resident memory of the process so far, MB
+    """
+
+    model: Model
+    level: int | None
+    order: int | None
+    quantities: Quantities
+    total_seconds: float
+    peak_memory: float
+
+
+@dataclass(frozen=True)
+class CaseRun:
+    """A case answered by both models.
+
+    Attributes
+    ----------
+    references : of the 3D reference on three meshes, coarse to fine
+    """
+
+    case: Case
+    rod: Run
+    references: tuple[Run, ...]
+    comparisons: tuple[Comparison, ...]
+
+
+@dataclass(frozen=True)
+class Failure:
+    """A case that could not be run to its end, and why, in one sentence."""
+
+    case: Case
+    reason: str
+
+
+def run_rod(case: Case, level: int | None = None, order: int | None = None, repeats: int = 1) -> Run:
+    """Solve a case with the rod model; level and order are the case's where they are not given.
+
+    Raises
+    ------
+    SceneError
+        if the rod model cannot treat the scene.
+    """
+    import rodmodel
+
+    level = case.rod_model.level if level is None else level
+    order = case.rod_model.order if order is None else order
+    points = evaluation_points(case)
+    runs = []
+    for _ in range(repeats):
+        begin = time.perf_counter()
+        solution = rodmodel.solve(case.scene, level=level, order=order)
+        quantities = evaluate(solution, points.stations, points.stress_points)
+        runs.append((quantities, time.perf_counter() - begin))
+    quantities = replace(
+        runs[-1][0],
+        setup_seconds=statistics.median(quantities.setup_seconds for quantities, _ in runs),
+        solve_seconds=statistics.median(quantities.solve_seconds for quantities, _ in runs),
+    )
+    total = statistics.median(seconds for _, seconds in runs)
+    return Run("rod", level, order, quantities, total, _peak_memory())
+
+
+def run_reference(case: Case) -> Run:
+    """Solve a case as a 3D solid, on the reference's default mesh.
+
+    Raises
+    ------
+    SceneError
+        if the 3D reference cannot treat the scene.
+    """
+    import reference3d
+
+    points = evaluation_points(case)
+    begin = time.perf_counter()
+    solution = reference3d.solve(case.scene)
+    quantities = evaluate(solution, points.stations, points.stress_points)
+    return Run("reference", None, None, quantities, time.perf_counter() - begin, _peak_memory())
+
+
+def run_case(case: Case, progress: Progress) -> CaseRun:
+    """Solve a case both ways and compare; `progress` is told what begins.
+
+    Raises
+    ------
+    SceneError
+        if either model cannot treat the scene.
+    """
+    import reference3d
+
+    progress("rod model")
+    rod = run_rod(case, repeats=ROD_REPEATS)
+
+    points = evaluation_points(case)
+    solutions = reference3d.solve_sequence(case.scene, lambda done, of: progress(f"3D mesh {done + 1} of {of}"))
+    progress("comparison")
+    references = []
+    for solution in solutions:
+        begin = time.perf_counter()
+        quantities = evaluate(solution, points.stations, points.stress_points)
+        total = solution.cost.setup_seconds + solution.cost.solve_seconds + time.perf_counter() - begin
+        references.append(Run("reference", None, None, quantities, total, _peak_memory()))
+
+    coarse, medium, fine = (solution.representative_size for solution in solutions)
+    order = reference3d.formal_order(case.scene)
+
+    def extrapolate(*values: float) -> Extrapolation:
+        found = reference3d.grid_convergence(values, (coarse, medium, fine), order)
+        return Extrapolation(
+            found.extrapolated, found.uncertainty, found.observed_order if found.asymptotic else None
+        )
+
+    comparisons = case_comparisons(case, rod.quantities, [run.quantities for run in references], extrapolate)
+    return CaseRun(case, rod, tuple(references), comparisons)
+
+
+def run_cases(cases: Sequence[Case], progress: Callable[[Case, str], None]) -> Iterator[CaseRun | Failure]:
+    """Run cases one after the other, each in its own process; a failure is yielded, not raised."""
+    for case in cases:
+        yield in_own_process(run_case, case, lambda what, case=case: progress(case, what))
+
+
+def in_own_process(work: Callable[[Case, Progress], CaseRun], case: Case, progress: Progress) -> CaseRun | Failure:
+    """The result of `work(case, progress)`, done in a process of its own, or why there is none."""
+    context = multiprocessing.get_context("spawn")
+    receiver, sender = context.Pipe(duplex=False)
+    process = context.Process(target=_worker, args=(work, case, sender), daemon=True)
+    process.start()
+    sender.close()
+    try:
+        while True:
+            kind, content = receiver.recv()
+            if kind == "progress":
+                progress(content)
+            elif kind == "failed":
+                return Failure(case, content)
+            else:
+                run: CaseRun = content
+                return run
+    except EOFError:
+        process.join()
+        code = process.exitcode
+        killed = " (signal 9: perhaps for lack of memory)" if code == -signal.SIGKILL else ""
+        return Failure(case, f"its process ended early with exit code {code}{killed}")
+    finally:
+        receiver.close()
+        if process.is_alive():
+            process.terminate()
+        process.join()
+
+
+def _worker(work: Callable[[Case, Progress], CaseRun], case: Case, sender: Connection) -> None:
+    # Ctrl-C is the parent's to answer; standard output belongs to it too.
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+    try:
+        run = work(case, lambda what: sender.send(("progress", what)))
+        sender.send(("done", run))
+    except Exception as error:  # noqa: BLE001 (whatever went wrong, the other cases go on)
+        sender.send(("failed", failure_reason(error)))
+
+
+def failure_reason(error: BaseException) -> str:
+    """An exception in one line: what it says, or, for one that nobody meant to raise, also where it came from."""
+    from cases.scene import SceneError
+
+    text = " ".join(str(error).split())
+    if isinstance(error, SceneError):
+        return text
+    where = traceback.extract_tb(error.__traceback__)[-1]
+    return f"{type(error).__name__}: {text} ({Path(where.filename).name}, line {where.lineno})"
+
+
+def _peak_memory() -> float:
+    """Largest resident memory of this process so far, MB."""
+    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    return peak / 2**20 if sys.platform == "darwin" else peak / 2**10
