@@ -35,7 +35,7 @@ class QuantityKind:
     ----------
     of : whether it belongs to a rod or to a contact pair
     unit : of its values
-    relative : whether its tolerance is a fraction (of the value; of a curve's largest value) or a value in `unit`
+    relative : whether its tolerance is a fraction (of the value; of a curve's largest value) or a length
     comparable : whether rod and 3D reference may be held against each other by it. The largest bending stress
         is not: it is the stress of a finite element solution at a singular section, and grows without bound.
     publishable : whether a number or a list of numbers states it

@@ -39,7 +39,7 @@ TRUTH = Path(__file__).parent / "truth"
 
 
 class CaseError(Exception):
-    """A case that cannot be read; the message is one sentence: file, key, what was found, what would be right."""
+    """A case that cannot be read; its message is one sentence: file, key, what was found, what is right."""
 
 
 def library_names() -> tuple[str, ...]:
@@ -86,9 +86,9 @@ def _find(name_or_path: str | Path) -> tuple[Path, str]:
             f"{given}: found {found}; give the path of a case file or a name that `rodcheck list` prints"
         )
     near = _nearest(path.stem, library_names())
-    hint = f"did you mean '{near}'" if near else f"the library has {_listed(library_names())}"
+    hint = f"did you mean '{near}'" if near else "`rodcheck list` prints the library's names"
     raise CaseError(
-        f"{_shown(given)}: found neither a case of the library nor a file; {hint}, or give another path?"
+        f"{_shown(given)}: found neither a case of the library nor a file; {hint}, and a path will do too"
     )
 
 
@@ -169,7 +169,7 @@ def _sentence(problem: ErrorDetails, schema: dict[str, Any]) -> str:
 
 
 def _key(place: Iterable[str | int]) -> str:
-    """A place in a case file, as one would say it: "loads #1.force #3" is the third entry of the first load's force."""
+    """Say where in a case file: "loads #1.force #3" is the third component of the first load's force."""
     return "".join(f" #{part + 1}" if isinstance(part, int) else f".{part}" for part in place).removeprefix(
         "."
     )
@@ -356,8 +356,8 @@ def _require_inside(key: str, point: Vector, rod: Rod) -> None:
     x, y, s = point
     width, height, length = rod.section.width, rod.section.height, rod.length
     inside = abs(x) <= width / 2 and abs(y) <= height / 2 and 0.0 <= s <= length
-    remedy = f"in rod '{rod.name}' x is within +-{width / 2:g}, y within +-{height / 2:g} and s from 0 to {length:g} mm"
-    _require(inside, key, list(point), remedy)
+    limits = f"x is within +-{width / 2:g}, y within +-{height / 2:g} and s from 0 to {length:g} mm"
+    _require(inside, key, list(point), f"in rod '{rod.name}' {limits}")
 
 
 def _published(key: str, table: PublishedTable, scene: Scene) -> Published:

@@ -1,7 +1,8 @@
 """A scene: elastic rods, their supports, loads and contact pairs, as plain frozen data.
 
-Units are N, mm, MPa; angles in radians; frames right-handed. Nothing here computes: the rod model and the
-3D reference each derive their own geometry from this data, so that a mistake in one cannot hide in both.
+Units are N, mm, MPa; angles in radians; frames right-handed. Nothing here computes for a solver: the rod
+model and the 3D reference each derive their own geometry from this data, so that a mistake in one cannot hide
+in both. The little geometry here only checks that a scene can be what its author meant.
 
 Local frame of a rod (e1, e2, t): t is the tangent of the centre line, e2 the part of `up` normal to t,
 e1 = e2 x t. Section coordinates: x along e1, y along e2, origin at the centroid; s is the arc length from
@@ -12,10 +13,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Literal
 
 import numpy as np
+from numpy.typing import NDArray
 
+_Array = NDArray[np.float64]
 Vector = tuple[float, float, float]
 End = Literal["start", "end"]
 Face = Literal["top", "bottom", "left", "right"]
@@ -23,13 +27,17 @@ Face = Literal["top", "bottom", "left", "right"]
 FACES: tuple[Face, ...] = ("top", "bottom", "left", "right")
 ENDS: tuple[End, ...] = ("start", "end")
 
+# Least angle between the outward normals of two faces that may touch, degrees.
+_LEAST_FACING_ANGLE = 135.0
+
 
 class SceneError(ValueError):
     """A scene that cannot be what its author meant, said in one sentence.
 
     Attributes
     ----------
-    key : where in the scene, as the case file spells it: "rods.lower.element_borders"
+    key : where in the scene, as one would say it of the case file: "rods.lower.element_borders", or
+        "loads #1.force" for the first of the loads
     found : what was found there
     remedy : what would be right
     """
@@ -141,7 +149,7 @@ class Rod:
         key = f"rods.{self.name}.element_borders"
         borders = self.element_borders
         _require(len(borders) >= 2, key, list(borders), "at least the two ends of the rod are needed")
-        rising = all(a < b for a, b in zip(borders, borders[1:], strict=False))
+        rising = all(a < b for a, b in pairwise(borders))
         _require(rising, key, list(borders), "borders must increase along the rod")
         length = self.centre_line.length
         ok = borders[0] == 0.0 and math.isclose(borders[-1], length, rel_tol=1e-9)
@@ -178,7 +186,7 @@ class SectionForce:
 
 @dataclass(frozen=True)
 class RodFace:
-    """A lateral face of a rod: top is y = +height/2, bottom y = -height/2, right x = +width/2, left the other."""
+    """A lateral face of a rod: top is y = +height/2, bottom -height/2; right is x = +width/2, left -width/2."""
 
     rod: str
     face: Face
@@ -228,19 +236,19 @@ class Scene:
         ):
             twice = next((name for name in names if names.count(name) > 1), None)
             _require(twice is None, what, f"'{twice}' twice", "give each its own name")
-        for index, support in enumerate(self.supports):
-            self._rod_at(f"supports[{index}].rod", support.rod)
-            _require(support.end in ENDS, f"supports[{index}].end", support.end, "write 'start' or 'end'")
-            twice = support in self.supports[:index]
-            _require(
-                not twice, f"supports[{index}]", f"{support.rod} {support.end} again", "support an end once"
-            )
-        for index, load in enumerate(self.loads):
-            rod = self._rod_at(f"loads[{index}].rod", load.rod)
-            _require_finite(load.force, f"loads[{index}].force")
+        for number, support in enumerate(self.supports, 1):
+            key = f"supports #{number}"
+            self._rod_at(f"{key}.rod", support.rod)
+            _require(support.end in ENDS, f"{key}.end", support.end, "write 'start' or 'end'")
+            again = support in self.supports[: number - 1]
+            _require(not again, key, f"{support.rod} {support.end} again", "support an end once")
+        for number, load in enumerate(self.loads, 1):
+            key = f"loads #{number}"
+            rod = self._rod_at(f"{key}.rod", load.rod)
+            _require_finite(load.force, f"{key}.force")
             ok = 0.0 <= load.position <= rod.length * (1.0 + 1e-9)
-            where = f"loads[{index}].position"
-            _require(ok, where, f"{load.position:g}", f"rod '{rod.name}' runs from 0 to {rod.length:g} mm")
+            remedy = f"rod '{rod.name}' runs from 0 to {rod.length:g} mm"
+            _require(ok, f"{key}.position", f"{load.position:g}", remedy)
         for pair in self.contacts:
             self._check_contact(pair)
 
@@ -255,9 +263,8 @@ class Scene:
         key = f"contacts.{pair.name}"
         for side, face in (("first", pair.first), ("second", pair.second)):
             self._rod_at(f"{key}.{side}.rod", face.rod)
-            _require(
-                face.face in FACES, f"{key}.{side}.face", f"'{face.face}'", f"write one of {', '.join(FACES)}"
-            )
+            remedy = f"write one of {', '.join(FACES)}"
+            _require(face.face in FACES, f"{key}.{side}.face", f"'{face.face}'", remedy)
         different = pair.first.rod != pair.second.rod
         _require(different, f"{key}.second.rod", f"'{pair.second.rod}'", "a pair needs two different rods")
         rod = self.rod(pair.first.rod)
@@ -267,6 +274,7 @@ class Scene:
         _require(ok, f"{key}.zone", f"{start:g} .. {end:g}", remedy)
         _require(math.isfinite(pair.gap), f"{key}.gap", f"{pair.gap:g}", "a finite length is needed")
         _require_positive(pair.penalty, f"{key}.penalty", "a penalty")
+        _require_facing(pair, rod, self.rod(pair.second.rod), key)
 
     def rod(self, name: str) -> Rod:
         """The rod called `name`; KeyError if there is none."""
@@ -281,3 +289,68 @@ class Scene:
             if pair.name == name:
                 return pair
         raise KeyError(name)
+
+
+@dataclass(frozen=True)
+class _FaceGeometry:
+    """A lateral face of a straight rod: outward normal, direction across it and half its width along that."""
+
+    normal: _Array
+    across: _Array
+    half_width: float
+
+
+def _face_geometry(rod: Rod, face: Face) -> _FaceGeometry:
+    line, section = rod.centre_line, rod.section
+    tangent = np.subtract(line.end, line.start) / line.length
+    e2 = np.asarray(line.up) - np.dot(line.up, tangent) * tangent
+    e2 /= np.linalg.norm(e2)
+    e1 = np.cross(e2, tangent)
+    if face in ("top", "bottom"):
+        return _FaceGeometry(e2 if face == "top" else -e2, e1, section.width / 2.0)
+    return _FaceGeometry(e1 if face == "right" else -e1, e2, section.height / 2.0)
+
+
+def _require_facing(pair: ContactPair, first: Rod, second: Rod, key: str) -> None:
+    """See that the faces of a pair look at each other, over the whole zone."""
+    face, other = _face_geometry(first, pair.first.face), _face_geometry(second, pair.second.face)
+    cosine = float(np.clip(np.dot(face.normal, other.normal), -1.0, 1.0))
+    angle = math.degrees(math.acos(cosine))
+    _require(
+        angle >= _LEAST_FACING_ANGLE,
+        f"{key}.second.face",
+        f"'{pair.second.face}', whose outward normal is turned by {angle:.0f} degrees from the first face's",
+        f"choose faces that face each other (180 degrees, at least {_LEAST_FACING_ANGLE:.0f})",
+    )
+    origin, length = np.asarray(first.centre_line.start), first.length
+    tangent = np.subtract(first.centre_line.end, origin) / length
+    ends = np.array([second.centre_line.start, second.centre_line.end]) - origin
+    along = ends @ tangent
+    begin, stop = float(np.min(along)), float(np.max(along))
+    shared = (max(0.0, begin), min(length, stop))
+    where = f"from {shared[0]:g} to {shared[1]:g} mm" if shared[0] < shared[1] else "nowhere"
+    start, end = pair.zone
+    slack = 1e-9 * length
+    _require(
+        begin - slack <= start and end <= stop + slack,
+        f"{key}.zone",
+        f"{start:g} .. {end:g}",
+        f"rod '{second.name}' lies opposite rod '{first.name}' {where}, and the zone must be within that",
+    )
+    # From the first rod's centre line to the second's, where the zone starts and ends.
+    share = (np.array(pair.zone) - along[0]) / (along[1] - along[0])
+    offset = ends[0] + np.outer(share, ends[1] - ends[0]) - np.outer(pair.zone, tangent)
+    _require(
+        bool(np.all(offset @ face.normal > 0.0)),
+        f"{key}.first.face",
+        f"'{pair.first.face}', while rod '{second.name}' is drawn on the other side of rod '{first.name}'",
+        "choose the face that looks towards the second rod",
+    )
+    aside = float(np.max(np.abs(offset @ face.across)))
+    reach = face.half_width + other.half_width
+    _require(
+        aside < reach,
+        f"{key}.second.rod",
+        f"'{second.name}', drawn {aside:g} mm aside of rod '{first.name}'",
+        f"the faces overlap only where the centre lines are less than {reach:g} mm aside of each other",
+    )

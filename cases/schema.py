@@ -94,8 +94,8 @@ class CentreLineTable(_Table):
     end: tuple[Length, Length, Length]
     """Where the rod ends, three lengths [X, Y, Z], such as ["300 mm", 0, 0]."""
     up: tuple[Number, Number, Number]
-    """Direction of the section's y axis, three numbers [X, Y, Z], such as [0, 1, 0]; its part along the line is
-    taken off."""
+    """Direction of the section's y axis, three numbers [X, Y, Z], such as [0, 1, 0]; its part along the line
+    is taken off."""
 
 
 class RodTable(_Table):
@@ -106,8 +106,8 @@ class RodTable(_Table):
     material: Text
     """Name of one of the [materials]."""
     element_borders: tuple[Length, ...]
-    """Borders of the rod model's elements, a list of rising lengths from 0 to the rod's length, measured along the
-    rod from its start; borders inside a contact zone move to the edges of the contact."""
+    """Borders of the rod model's elements, a list of rising lengths from 0 to the rod's length, along the rod
+    from its start; borders inside a contact zone move to the edges of the contact."""
     centre_line: CentreLineTable
     """The rod's centre line, as table [rods.NAME.centre_line]."""
 
@@ -154,8 +154,8 @@ class ContactTable(_Table):
     """The second face, such as { rod = "upper", face = "bottom" }."""
     zone: tuple[Length, Length]
     """Where the faces may touch: two rising lengths [from, to] along the first rod from its start."""
-    gap: Length
-    """Distance of the faces before loading, a length; it counts as given, whatever distance is drawn."""
+    gap: Annotated[Length, Field(ge=0.0)]
+    """Distance of the faces before loading, a length, not negative; it counts as given, whatever is drawn."""
     penalty: PenaltyUnit
     """Pressure per penetration, a stress per length, such as "1e6 N/mm^3"; positive."""
 
@@ -206,8 +206,8 @@ class PublishedTable(_Table):
 class CaseFile(_Table):
     """A case of rodcheck: rods, what acts on them, and what their solutions are held against.
 
-    A number with a unit is a string, such as "200 GPa"; a bare number is in mm, N or MPa. A key [rods.NAME] is a
-    table of its own for every name.
+    A number with a unit is a string, such as "200 GPa"; a bare number is in mm, N or MPa. A key [rods.NAME]
+    is a table of its own for every name.
     """
 
     title: Text

@@ -1,7 +1,7 @@
 """Numbers with units, as case files write them: `15` and `"15 mm"` and `"0.015 m"` are the same length.
 
-Conversion is pint's. Its import takes a quarter of a second, so it waits until a unit is met, and its registry
-holds only the units of mechanics.
+Conversion is pint's. Its import takes a quarter of a second, so it waits until a unit is met, and its
+registry holds only the units of mechanics.
 """
 
 from __future__ import annotations
@@ -97,8 +97,8 @@ def to_unit(value: object, wanted: Unit) -> float:
 
     Parameters
     ----------
-    value : a number, taken to be in `wanted` already, or a string of a number and a unit; a percentage must be
-        a string, since 0.1 could be meant either way
+    value : a number, taken to be in `wanted` already, or a string of a number and a unit; a percentage must
+        be a string, since 0.1 could be meant either way
 
     Returns
     -------

@@ -1,199 +1,197 @@
 """Make `.venv` ready: pinned packages, this project, and the system libraries that gmsh and pyvista need.
 
-Standard library only, and no syntax newer than Python 3.6, so that an old interpreter gets a sentence instead
-of a syntax error. Run by `make setup`; does nothing when `.venv` is up to date.
+Run by `make setup`; does nothing when `.venv` is up to date. Standard library only, and no syntax newer than
+Python 3.7, so that an old interpreter gets a sentence instead of a syntax error.
 """
+
+from __future__ import annotations
 
 import hashlib
 import os
 import shutil
 import subprocess
 import sys
+from pathlib import Path
 
 OLDEST_PYTHON = (3, 11)
-TOP = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
-VENV = os.path.join(TOP, ".venv")
-VENV_PYTHON = os.path.join(VENV, "bin", "python")
-STAMP = os.path.join(VENV, "rodcheck-ready")
+TOP = Path(__file__).resolve().parent.parent
+VENV = TOP / ".venv"
+VENV_PYTHON = VENV / "bin" / "python"
+STAMP = VENV / "rodcheck-ready"
 # What decides whether `.venv` is up to date.
-INPUTS = ("requirements.lock", "pyproject.toml", os.path.join("tools", "setup.py"))
+INPUTS = ("requirements.lock", "pyproject.toml", "tools/setup.py")
 
-# Debian's names. gmsh's wheel links X and GL libraries; pyvista draws off screen through EGL on Mesa.
-SYSTEM_PACKAGES = (
-    "libglu1-mesa libxcursor1 libxft2 libxinerama1 libxrender1 libfontconfig1 libgomp1 "  # gmsh
-    "libegl1 libgl1 libgl1-mesa-dri libxext6"  # pyvista
-).split()
+# Debian's names. gmsh's wheel links the first seven; pyvista draws off screen with the others.
+SYSTEM_PACKAGES = [
+    "libglu1-mesa",
+    "libxcursor1",
+    "libxft2",
+    "libxinerama1",
+    "libxrender1",
+    "libfontconfig1",
+    "libgomp1",
+    "libegl1",
+    "libgl1",
+    "libgl1-mesa-dri",
+]
 
-GMSH_PROBE = "import gmsh"
-RENDER_PROBE = """
+PROBES = {
+    "import gmsh": "import gmsh",
+    "drawing with pyvista": """
 import pyvista
 plotter = pyvista.Plotter(off_screen=True, window_size=(64, 64))
 plotter.add_mesh(pyvista.Cube(), color="red")
-picture = plotter.screenshot(return_img=True)
-assert picture.std() > 0, "the off-screen picture is empty"
-"""
+assert plotter.screenshot(return_img=True).std() > 0, "the picture is empty"
+""",
+}
 
 
 class SetupError(Exception):
     """Set-up cannot go on; the message says what to do."""
 
 
-def is_recent(version):
-    """Whether an interpreter's version, such as (3, 11, 7), will do."""
-    return tuple(version[:2]) >= OLDEST_PYTHON
+def say(text: str) -> None:
+    """Print one line of progress."""
+    print(f"setup: {text}", flush=True)
 
 
-def version_of(python):
-    """Version of the interpreter `python` as a tuple, or None where it does not run."""
-    code = "import sys; print(*sys.version_info[:3])"
+def run(command: list[str], environment: dict[str, str] | None = None) -> tuple[bool, str]:
+    """Run a command in the project's folder; whether it succeeded, and all it printed."""
     try:
-        out = subprocess.run([python, "-c", code], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL)
-    except OSError:
-        return None
-    return tuple(int(part) for part in out.stdout.split()) if out.returncode == 0 else None
+        done = subprocess.run(
+            command,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            stdin=subprocess.DEVNULL,
+            env=environment,
+            cwd=str(TOP),
+        )
+    except OSError as error:
+        return False, str(error)
+    return done.returncode == 0, done.stdout.decode(errors="replace")
 
 
-def find_python():
-    """Path of a Python that is recent enough: the one running this, else one on PATH."""
-    names = ["python3.%d" % minor for minor in range(OLDEST_PYTHON[1], OLDEST_PYTHON[1] + 4)]
-    for candidate in [sys.executable] + [shutil.which(name) for name in names]:
+def run_or_stop(what: str, command: list[str], environment: dict[str, str] | None = None) -> None:
+    """Run a command; stop with the end of what it printed if it fails."""
+    ok, output = run(command, environment)
+    if not ok:
+        raise SetupError(f"{what} failed:\n{last_lines(output, 12)}")
+
+
+def last_lines(text: str, count: int) -> str:
+    """Return the last lines of a text that are not empty."""
+    return "\n".join([line for line in text.splitlines() if line.strip()][-count:])
+
+
+def version_of(python: str) -> tuple[int, ...] | None:
+    """Return an interpreter's version, such as (3, 11, 7); None where it does not run."""
+    ok, output = run([python, "-c", "import sys; print(*sys.version_info[:3])"])
+    return tuple(int(part) for part in output.split()) if ok else None
+
+
+def find_python() -> str:
+    """Return a Python that is recent enough: the one running this, else one on PATH."""
+    names = [f"python3.{minor}" for minor in range(OLDEST_PYTHON[1], OLDEST_PYTHON[1] + 4)]
+    for candidate in [sys.executable, *map(shutil.which, names)]:
         version = version_of(candidate) if candidate else None
-        if version is not None and is_recent(version):
-            return candidate
-    found = ".".join(map(str, sys.version_info[:3]))
+        if version is not None and version >= OLDEST_PYTHON:
+            return str(candidate)
+    needed, found = ".".join(map(str, OLDEST_PYTHON)), ".".join(map(str, sys.version_info[:3]))
     raise SetupError(
-        "rodcheck needs Python %d.%d or newer, found only %s; install one (Debian, Ubuntu: python3.11 or newer) "
-        "and run make again, or name it: make setup PYTHON=/path/to/python3" % (OLDEST_PYTHON + (found,))
+        f"Python {needed} or newer is needed, found {found}; install one, and name it if it is not on PATH:\n\n"
+        "    make setup PYTHON=/path/to/python3"
     )
 
 
-def may_install():
-    """The prefix with which apt-get may be run here without asking anybody, or None if it may not."""
+def apt_prefix() -> list[str] | None:
+    """Return what stands before apt-get to run it unasked; None where that cannot be."""
     if shutil.which("apt-get") is None:
         return None
     if os.geteuid() == 0:
         return []
-    if shutil.which("sudo") and run_quietly(["sudo", "-n", "true"])[0]:
+    if shutil.which("sudo") and run(["sudo", "-n", "true"])[0]:
         return ["sudo", "-n"]
     return None
 
 
-def install_command(packages):
-    """The one command that installs Debian packages, as a person would type it."""
-    prefix = "" if os.geteuid() == 0 else "sudo "
-    return "%sapt-get update && %sapt-get install -y %s" % (prefix, prefix, " ".join(packages))
-
-
-def install_system_packages(packages, reason):
+def install_system_packages(packages: list[str], reason: str) -> None:
     """Install Debian packages if that is allowed; otherwise stop with the one command to type."""
-    prefix = may_install()
+    prefix = apt_prefix()
+    names = " ".join(packages)
+    if prefix is None and shutil.which("apt-get"):
+        sudo = "sudo " if os.geteuid() != 0 else ""
+        command = f"{sudo}apt-get update && {sudo}apt-get install -y --no-install-recommends {names}"
+        raise SetupError(f"{reason}; type this and run make again:\n\n    {command}")
     if prefix is None:
-        if shutil.which("apt-get"):
-            advice = "run\n\n    %s\n\nand then make again." % install_command(packages)
-        else:
-            advice = "install what Debian calls %s, and run make again." % " ".join(packages)
-        raise SetupError("%s; %s" % (reason, advice))
-    say("%s: installing %s" % (reason, " ".join(packages)))
-    environment = dict(os.environ, DEBIAN_FRONTEND="noninteractive")
-    # A list that cannot be renewed may still serve: only a failed install stops the set-up.
-    run_quietly(prefix + ["apt-get", "update"], environment)
-    arguments = ["apt-get", "install", "-y", "--no-install-recommends"] + packages
-    ok, output = run_quietly(prefix + arguments, environment)
-    if not ok:
-        raise SetupError("apt-get could not install them:\n%s" % tail(output, 8))
+        raise SetupError(f"{reason}; install what Debian calls {names}, and run make again")
+    say(f"{reason}; installing {names}")
+    environment = {**os.environ, "DEBIAN_FRONTEND": "noninteractive"}
+    # Package lists that cannot be renewed may still serve: only a failed install stops the set-up.
+    run([*prefix, "apt-get", "update"], environment)
+    command = [*prefix, "apt-get", "install", "-y", "--no-install-recommends", *packages]
+    run_or_stop(f"apt-get install {names}", command, environment)
 
 
-def run_quietly(command, environment=None, timeout=None):
-    """Run a command; return whether it succeeded, and all it printed."""
-    try:
-        done = subprocess.run(
-            command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, env=environment, timeout=timeout, cwd=TOP
-        )
-    except subprocess.TimeoutExpired:
-        return False, "no answer within %d s" % timeout
-    return done.returncode == 0, done.stdout.decode(errors="replace")
-
-
-def tail(text, lines):
-    """The last non-empty lines of a text."""
-    return "\n".join([line for line in text.splitlines() if line.strip()][-lines:])
-
-
-def say(text):
-    """One line of progress."""
-    print("setup: " + text, flush=True)
-
-
-def fingerprint():
-    """What `.venv` has to match: the content of the inputs and the folder, which an editable install names."""
-    digest = hashlib.sha256(TOP.encode())
+def fingerprint() -> str:
+    """Return what `.venv` has to match: its inputs, and the folder, which an editable install names."""
+    digest = hashlib.sha256(str(TOP).encode())
     for name in INPUTS:
-        with open(os.path.join(TOP, name), "rb") as file:
-            digest.update(file.read())
+        digest.update((TOP / name).read_bytes())
     return digest.hexdigest()
 
 
-def is_ready():
+def is_ready() -> bool:
     """Whether `.venv` was completed from the same inputs, and its interpreter still runs."""
-    try:
-        with open(STAMP) as file:
-            same = file.read().strip() == fingerprint()
-    except OSError:
-        return False
-    return same and version_of(VENV_PYTHON) is not None
+    same = STAMP.is_file() and STAMP.read_text().strip() == fingerprint()
+    return same and version_of(str(VENV_PYTHON)) is not None
 
 
-def make_venv():
-    """Make `.venv`, unless it has a working, recent interpreter."""
-    version = version_of(VENV_PYTHON)
-    if version is not None and is_recent(version) and run_quietly([VENV_PYTHON, "-m", "pip", "--version"])[0]:
+def make_venv() -> None:
+    """Make `.venv`, unless it has a recent interpreter with pip."""
+    version = version_of(str(VENV_PYTHON))
+    recent = version is not None and version >= OLDEST_PYTHON
+    if recent and run([str(VENV_PYTHON), "-m", "pip", "--version"])[0]:
         return
     python = find_python()
-    if not run_quietly([python, "-c", "import ensurepip, venv"])[0]:
-        package = "python%d.%d-venv" % version_of(python)[:2]
-        install_system_packages([package], "Python's venv module is missing")
+    if not run([python, "-c", "import ensurepip, venv"])[0]:
+        major, minor, *_ = version_of(python) or OLDEST_PYTHON
+        install_system_packages([f"python{major}.{minor}-venv"], f"the venv module of {python} is missing")
     say("making .venv")
-    ok, output = run_quietly([python, "-m", "venv", "--clear", VENV])
-    if not ok:
-        raise SetupError("could not make .venv:\n%s" % tail(output, 8))
+    run_or_stop("making .venv", [python, "-m", "venv", "--clear", str(VENV)])
 
 
-def install_packages():
+def install_packages() -> None:
     """Install the pinned packages, and this project so that edits take effect at once."""
     say("installing the packages of requirements.lock")
-    pip = [VENV_PYTHON, "-m", "pip", "--disable-pip-version-check", "install", "--quiet"]
-    # The project itself: nothing but what the lock names, the build tool included.
-    for what in (["-r", "requirements.lock"], ["--no-deps", "--no-build-isolation", "-e", "."]):
-        ok, output = run_quietly(pip + what)
-        if not ok:
-            raise SetupError("pip could not install %s:\n%s" % (" ".join(what), tail(output, 12)))
-    ok, output = run_quietly([VENV_PYTHON, "-m", "pip", "--disable-pip-version-check", "check"])
-    if not ok:
-        raise SetupError("the packages of requirements.lock do not fit together:\n%s" % tail(output, 12))
+    pip = [str(VENV_PYTHON), "-m", "pip", "--disable-pip-version-check"]
+    run_or_stop("installing requirements.lock", [*pip, "install", "--quiet", "-r", "requirements.lock"])
+    # The lock has all that this project needs, its build tool included: nothing else is fetched.
+    project = [*pip, "install", "--quiet", "--no-deps", "--no-build-isolation", "-e", "."]
+    run_or_stop("installing rodcheck itself", project)
+    run_or_stop("checking that the packages fit together", [*pip, "check"])
 
 
-def failing_probe():
-    """(what, output) of the first thing that does not work in `.venv`, or None."""
-    for what, code in (("import gmsh", GMSH_PROBE), ("drawing with pyvista", RENDER_PROBE)):
-        ok, output = run_quietly([VENV_PYTHON, "-c", code], timeout=300)
+def first_failure() -> str | None:
+    """Say which of gmsh and off-screen drawing does not work in `.venv`; None if both do."""
+    for what, code in PROBES.items():
+        ok, output = run([str(VENV_PYTHON), "-c", code])
         if not ok:
-            return what, tail(output, 1)
+            return f"{what} fails ({last_lines(output, 1) or 'it crashed without a word'})"
     return None
 
 
-def check_system_libraries():
+def check_system_libraries() -> None:
     """See gmsh and off-screen drawing work; install system libraries where they do not."""
     say("trying gmsh and pyvista")
-    failure = failing_probe()
-    if failure is None:
-        return
-    install_system_packages(SYSTEM_PACKAGES, "%s fails (%s)" % failure)
-    failure = failing_probe()
+    failure = first_failure()
     if failure is not None:
-        raise SetupError("%s still fails with the system libraries installed: %s" % failure)
+        install_system_packages(SYSTEM_PACKAGES, failure)
+        failure = first_failure()
+    if failure is not None:
+        raise SetupError(f"{failure}, although its system libraries are installed")
 
 
-def main():
+def main() -> int:
     """Do what is missing; return the exit code."""
     if is_ready():
         return 0
@@ -202,13 +200,12 @@ def main():
         install_packages()
         check_system_libraries()
     except SetupError as error:
-        print("setup: %s" % error, file=sys.stderr)
+        print(f"setup: {error}", file=sys.stderr)
         return 1
     except KeyboardInterrupt:
         print("setup: interrupted; run make again to go on", file=sys.stderr)
         return 130
-    with open(STAMP, "w") as file:
-        file.write(fingerprint() + "\n")
+    STAMP.write_text(fingerprint() + "\n")
     say(".venv is ready")
     return 0
 
