@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from cases.case import Check
-from reports.comparison import CURVES, Estimate, compare, sequence_estimate
+from reports.comparison import CURVES, Estimate, compare, edges_estimate, sequence_estimate
 from reports.truth import SOURCE, independent_values
 
 if TYPE_CHECKING:
@@ -84,20 +84,18 @@ def case_comparisons(
     rod, references : quantities of the rod model and of the 3D reference on three meshes, coarse to fine, all
         evaluated at the case's `evaluation_points`
     """
-    found = []
-    for check in case.compare:
-        values = [extract(reference, check) for reference in references]
-        found.append(
-            compare(
-                check,
-                "rod",
-                extract(rod, check),
-                sequence_estimate(values, extrapolate, curve=check.quantity in CURVES),
-                kind="reference",
-                source=REFERENCE_SOURCE,
-                outcomes=[rod.outcome, *(reference.outcome for reference in references)],
-            )
+    found = [
+        compare(
+            check,
+            "rod",
+            extract(rod, check),
+            _reference_estimate(check, references, extrapolate),
+            kind="reference",
+            source=REFERENCE_SOURCE,
+            outcomes=[rod.outcome, *(reference.outcome for reference in references)],
         )
+        for check in case.compare
+    ]
     if case.independent is not None:
         truth = independent_values(case.independent, case.scene)
         found += _against_truth(case, "rod", rod, truth)
@@ -116,6 +114,15 @@ def case_comparisons(
             )
         )
     return tuple(found)
+
+
+def _reference_estimate(check: Check, references: Sequence[Quantities], extrapolate: Extrapolate) -> Estimate:
+    values = [extract(reference, check) for reference in references]
+    if check.quantity == "contact_edges":
+        return edges_estimate(values, references[-1].contact(check.of).edges_resolution)
+    if check.quantity == "contact_edges_outer":
+        return edges_estimate(values, references[-1].contact(check.of).edges_outer_resolution)
+    return sequence_estimate(values, extrapolate, curve=check.quantity in CURVES)
 
 
 def _against_truth(

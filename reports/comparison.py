@@ -190,6 +190,27 @@ def _ratio(numerator: float, denominator: float) -> float:
     return numerator / denominator if denominator > 0.0 else math.inf
 
 
+def edges_estimate(values: Sequence[Array], resolution: float) -> Estimate:
+    """Estimate of contact edges from three meshes.
+
+    Parameters
+    ----------
+    values : coarse to fine, mm, shape (n,) each
+    resolution : widest interval of stations that holds an edge on the finest mesh, mm
+
+    Notes
+    -----
+    An edge follows the mesh in steps and not as a power of its size, so that no order can be observed. The
+    value is that of the finest mesh; the uncertainty is the largest change between meshes and half the
+    resolution.
+    """
+    coarse, medium, fine = values
+    if not coarse.shape == medium.shape == fine.shape:
+        return Estimate(fine, None)
+    change = np.abs([fine - medium, fine - coarse, medium - coarse]).max(initial=0.0)
+    return Estimate(fine, float(change) + 0.5 * resolution)
+
+
 def sequence_estimate(values: Sequence[Array], extrapolate: Extrapolate, *, curve: bool) -> Estimate:
     """Estimate from one quantity on three meshes.
 
@@ -201,9 +222,9 @@ def sequence_estimate(values: Sequence[Array], extrapolate: Extrapolate, *, curv
 
     Notes
     -----
-    Numbers (edges, say) are extrapolated one by one and the largest uncertainty counts. A curve is
-    extrapolated as a whole, with the order observed where the two finest meshes differ most. Where the
-    meshes do not even agree on the number of values, the uncertainty is unknown.
+    Numbers are extrapolated one by one and the largest uncertainty counts. A curve is extrapolated as a
+    whole, with the order observed where the two finest meshes differ most. Where the meshes do not even agree
+    on the number of values, the uncertainty is unknown.
     """
     coarse, medium, fine = values
     if not coarse.shape == medium.shape == fine.shape:

@@ -59,6 +59,21 @@ def contact_stretches(
     return tuple(stretches)
 
 
+def edge_resolution(
+    station: Array, stretches: tuple[tuple[float, float], ...], limits: tuple[float, float]
+) -> float:
+    """Width of the widest station interval that holds an edge, mm; an edge at a limit is exact.
+
+    Parameters
+    ----------
+    station : as in `contact_stretches`
+    """
+    inside = [edge for stretch in stretches for edge in stretch if edge not in limits]
+    after = np.searchsorted(station, inside, side="right").clip(1, len(station) - 1)
+    before = np.searchsorted(station, inside, side="left").clip(1, len(station) - 1) - 1
+    return float((station[after] - station[before]).max(initial=0.0))
+
+
 def _edge(
     station: Array, pressure: Array, index: int, step: int, alone: bool, limit: float, tolerance: float
 ) -> float:

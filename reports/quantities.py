@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from reports.contact_edges import contact_stretches
+from reports.contact_edges import contact_stretches, edge_resolution
 from reports.equilibrium import equilibrium_residual, equilibrium_resultants
 from reports.geometry import centre_line_points, contact_limits, pair_axis
 
@@ -142,6 +142,7 @@ class ContactQuantities:
     force : its magnitude, N
     centre : where it acts along the axis, mm; None without contact
     edges, edges_outer : (start, end) of each stretch in contact, ascending, mm
+    edges_resolution, edges_outer_resolution : widest interval of stations that holds one of the edges, mm
     penetration : largest overlap, mm
     """
 
@@ -152,6 +153,8 @@ class ContactQuantities:
     centre: float | None
     edges: tuple[tuple[float, float], ...]
     edges_outer: tuple[tuple[float, float], ...]
+    edges_resolution: float
+    edges_outer_resolution: float
     penetration: float
     pressure: PressureProfile
 
@@ -292,14 +295,18 @@ def contact_quantities(solution: Solution, pair: ContactPair) -> ContactQuantiti
     resultant = np.asarray(points.normal @ points.force)
     total = float(points.force.sum())
     profile = solution.contact_profile(pair.name)
+    edges, resolution = _edges(scene, pair, profile, profile.middle)
+    edges_outer, outer_resolution = _edges(scene, pair, profile, profile.outer)
     return ContactQuantities(
         pair=pair.name,
         axis=axis,
         resultant=resultant,
         force=float(np.linalg.norm(resultant)),
         centre=float(points.position[axis] @ points.force) / total if total > 0.0 else None,
-        edges=_edges(scene, pair, profile, profile.middle),
-        edges_outer=_edges(scene, pair, profile, profile.outer),
+        edges=edges,
+        edges_outer=edges_outer,
+        edges_resolution=resolution,
+        edges_outer_resolution=outer_resolution,
         penetration=float(max(0.0, -points.gap.min(initial=0.0))),
         pressure=PressureProfile(profile.position[axis], profile.middle, profile.mean, profile.outer),
     )
@@ -307,13 +314,13 @@ def contact_quantities(solution: Solution, pair: ContactPair) -> ContactQuantiti
 
 def _edges(
     scene: Scene, pair: ContactPair, profile: ContactProfile, pressure: Array
-) -> tuple[tuple[float, float], ...]:
-    """Stretches in contact, in the global coordinate of the pair's axis."""
-    first = scene.rod(pair.first.rod)
-    stretches = contact_stretches(profile.station, pressure, contact_limits(scene, pair))
-    axis = pair_axis(scene, pair)
+) -> tuple[tuple[tuple[float, float], ...], float]:
+    """Stretches in contact, in the global coordinate of the pair's axis, and their edges' resolution, mm."""
+    first, axis, limits = scene.rod(pair.first.rod), pair_axis(scene, pair), contact_limits(scene, pair)
+    stretches = contact_stretches(profile.station, pressure, limits)
     ends = [centre_line_points(first, np.array(stretch))[axis] for stretch in stretches]
-    return tuple(sorted((float(min(pair_ends)), float(max(pair_ends))) for pair_ends in ends))
+    along = tuple(sorted((float(min(pair_ends)), float(max(pair_ends))) for pair_ends in ends))
+    return along, edge_resolution(profile.station, stretches, limits)
 
 
 def rod_quantities(solution: Solution, rod: Rod, station: Array) -> RodQuantities:

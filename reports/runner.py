@@ -1,7 +1,7 @@
 """Run cases: the rod model, the 3D reference on three meshes, and everything they are held against.
 
-Every case runs in a process of its own, so that its peak memory can be told and a case that fails, or is killed,
-never stops the others.
+Every case runs in a process of its own, so that its peak memory can be told and a case that fails, or is
+killed, never stops the others.
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ import sys
 import time
 import traceback
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -26,7 +27,7 @@ if TYPE_CHECKING:
     from multiprocessing.connection import Connection
 
     from cases.case import Case
-    from reports.comparison import Comparison, Extrapolate
+    from reports.comparison import Comparison
     from reports.quantities import Quantities
     from reports.solution import Model
 
@@ -137,7 +138,9 @@ def run_case(case: Case, progress: Progress) -> CaseRun:
     rod = run_rod(case, repeats=ROD_REPEATS)
 
     points = evaluation_points(case)
-    solutions = reference3d.solve_sequence(case.scene, lambda done, of: progress(f"3D mesh {done + 1} of {of}"))
+    solutions = reference3d.solve_sequence(
+        case.scene, lambda done, of: progress(f"3D mesh {done + 1} of {of}")
+    )
     progress("comparison")
     references = []
     for solution in solutions:
@@ -149,8 +152,8 @@ def run_case(case: Case, progress: Progress) -> CaseRun:
     coarse, medium, fine = (solution.representative_size for solution in solutions)
     order = reference3d.formal_order(case.scene)
 
-    def extrapolate(*values: float) -> Extrapolation:
-        found = reference3d.grid_convergence(values, (coarse, medium, fine), order)
+    def extrapolate(first: float, second: float, third: float) -> Extrapolation:
+        found = reference3d.grid_convergence((first, second, third), (coarse, medium, fine), order)
         return Extrapolation(
             found.extrapolated, found.uncertainty, found.observed_order if found.asymptotic else None
         )
@@ -162,10 +165,12 @@ def run_case(case: Case, progress: Progress) -> CaseRun:
 def run_cases(cases: Sequence[Case], progress: Callable[[Case, str], None]) -> Iterator[CaseRun | Failure]:
     """Run cases one after the other, each in its own process; a failure is yielded, not raised."""
     for case in cases:
-        yield in_own_process(run_case, case, lambda what, case=case: progress(case, what))
+        yield in_own_process(run_case, case, partial(progress, case))
 
 
-def in_own_process(work: Callable[[Case, Progress], CaseRun], case: Case, progress: Progress) -> CaseRun | Failure:
+def in_own_process(
+    work: Callable[[Case, Progress], CaseRun], case: Case, progress: Progress
+) -> CaseRun | Failure:
     """The result of `work(case, progress)`, done in a process of its own, or why there is none."""
     context = multiprocessing.get_context("spawn")
     receiver, sender = context.Pipe(duplex=False)

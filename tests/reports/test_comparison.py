@@ -8,7 +8,14 @@ import numpy as np
 import pytest
 
 from cases.case import Check
-from reports.comparison import Estimate, Extrapolation, compare, judge, sequence_estimate
+from reports.comparison import (
+    Estimate,
+    Extrapolation,
+    compare,
+    edges_estimate,
+    judge,
+    sequence_estimate,
+)
 
 
 def second_order(coarse: float, medium: float, fine: float) -> Extrapolation:
@@ -121,3 +128,18 @@ def test_meshes_that_disagree_on_the_number_of_stretches_leave_the_reference_unr
     check = Check("contact_edges", "overlap", 1.0)
     found = compare(check, "rod", np.array([1.0, 2.0]), estimate, kind="reference", source="test")
     assert found.verdict == "not resolved"
+
+
+def test_edges_are_as_uncertain_as_they_move_with_the_mesh_and_the_stations_are_apart() -> None:
+    meshes = [np.array([200.0, 221.2]), np.array([200.0, 221.3]), np.array([200.0, 221.6])]
+
+    estimate = edges_estimate(meshes, resolution=0.8)
+
+    assert estimate.value == pytest.approx([200.0, 221.6])
+    assert estimate.uncertainty == pytest.approx(0.4 + 0.4)
+
+
+def test_edges_whose_number_depends_on_the_mesh_are_unresolved() -> None:
+    meshes = [np.array([1.0, 2.0]), np.array([1.0, 2.0]), np.array([1.0, 2.0, 3.0, 4.0])]
+
+    assert edges_estimate(meshes, resolution=0.1).uncertainty is None

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from reports.contact_edges import contact_stretches
+from reports.contact_edges import contact_stretches, edge_resolution
 
 LIMITS = (0.0, 100.0)
 
@@ -111,3 +111,19 @@ def test_no_pressure_means_no_stretch() -> None:
     station = np.linspace(0.0, 100.0, 11)
 
     assert contact_stretches(station, np.zeros_like(station), LIMITS) == ()
+
+
+def test_an_edge_is_as_sharp_as_the_stations_around_it() -> None:
+    station = np.array([0.0, 1.0, 2.0, 4.0, 8.0])
+
+    assert edge_resolution(station, ((0.0, 2.5),), (0.0, 8.0)) == 2.0
+    assert edge_resolution(station, ((0.5, 2.5),), (0.0, 8.0)) == 2.0
+    assert edge_resolution(station, ((0.5, 8.0),), (0.0, 8.0)) == 1.0
+
+
+def test_an_edge_at_the_end_of_the_zone_is_exact() -> None:
+    assert edge_resolution(np.array([0.0, 1.0, 2.0]), ((0.0, 2.0),), (0.0, 2.0)) == 0.0
+
+
+def test_an_edge_on_a_station_may_lie_on_either_side() -> None:
+    assert edge_resolution(np.array([0.0, 1.0, 3.0, 4.0]), ((0.0, 1.0),), (0.0, 4.0)) == 3.0
