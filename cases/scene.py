@@ -186,7 +186,7 @@ class SectionForce:
 
 @dataclass(frozen=True)
 class RodFace:
-    """A lateral face of a rod: top is y = +height/2, bottom -height/2; right is x = +width/2, left -width/2."""
+    """A lateral face of a rod: top (y = +height/2), bottom, right (x = +width/2) or left."""
 
     rod: str
     face: Face

@@ -98,7 +98,7 @@ def find_python() -> str:
             return str(candidate)
     needed, found = ".".join(map(str, OLDEST_PYTHON)), ".".join(map(str, sys.version_info[:3]))
     raise SetupError(
-        f"Python {needed} or newer is needed, found {found}; install one, and name it if it is not on PATH:\n\n"
+        f"Python {needed} or newer is needed, found {found}; install one, or name one:\n\n"
         "    make setup PYTHON=/path/to/python3"
     )
 
