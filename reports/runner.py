@@ -35,6 +35,8 @@ if TYPE_CHECKING:
 
 # The rod model answers in milliseconds; its seconds are the median of this many runs.
 ROD_REPEATS = 5
+# How often `run_case` tells its progress: the rod model, three meshes, the comparison.
+STEPS = 5
 
 
 @dataclass(frozen=True)
@@ -160,6 +162,15 @@ def run_case(case: Case, progress: Progress) -> CaseRun:
 
     comparisons = case_comparisons(case, rod.quantities, [run.quantities for run in references], extrapolate)
     return CaseRun(case, rod, tuple(references), comparisons)
+
+
+def passed(run: CaseRun | Failure) -> bool:
+    """Whether a case ran to its end, both models converged and every comparison passed."""
+    return (
+        isinstance(run, CaseRun)
+        and all(answer.quantities.converged for answer in (run.rod, *run.references))
+        and all(comparison.verdict == "pass" for comparison in run.comparisons)
+    )
 
 
 def run_cases(cases: Sequence[Case], progress: Callable[[Case, str], None]) -> Iterator[CaseRun | Failure]:

@@ -1,0 +1,211 @@
+"""The command `rodcheck`: list, solve, compare, report and schema.
+
+Heavy imports wait until a command needs them. Bad input is answered by one sentence on standard error and
+exit code 2; a verdict other than 'pass', a solver that did not converge or a case that failed by exit code 1.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Literal, NoReturn
+
+from cyclopts import App, CycloptsError, Parameter, validators
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from cases.case import Case
+    from reports.runner import CaseRun, Failure
+
+BAD_INPUT = 2
+NOT_PASSED = 1
+INTERRUPTED = 130
+
+
+class InputError(Exception):
+    """What the user gave cannot be used; the message is one sentence."""
+
+
+app = App(
+    name="rodcheck",
+    help="Rods in contact, solved by a hierarchic rod model and as a 3D solid, and held against each other.",
+    help_format="plaintext",
+)
+schema_app = App(name="schema", help="Print a JSON Schema.")
+app.command(schema_app)
+
+Level = Annotated[int | None, Parameter(validator=validators.Number(gte=1, lte=12))]
+Order = Annotated[int | None, Parameter(validator=validators.Number(gte=2, lte=20))]
+
+
+def main() -> NoReturn:
+    """Entry point."""
+    # Seconds are those of one thread, unless the user asks for more: small matrices lose by threads.
+    for variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
+        os.environ.setdefault(variable, "1")
+    sys.exit(run(sys.argv[1:]))
+
+
+def run(arguments: Sequence[str]) -> int:
+    """Run a command line and return its exit code."""
+    from cases.loader import CaseError
+    from cases.scene import SceneError
+
+    try:
+        code = app(list(arguments), exit_on_error=False, print_error=False, result_action="return_value")
+    except (CycloptsError, CaseError, SceneError, InputError) as error:
+        print("rodcheck:", " ".join(str(error).split()), file=sys.stderr)
+        return BAD_INPUT
+    except KeyboardInterrupt:
+        print("rodcheck: interrupted", file=sys.stderr)
+        return INTERRUPTED
+    return code if isinstance(code, int) else 0
+
+
+@app.command(name="list")
+def list_cases() -> int:
+    """List the cases of the library."""
+    from cases.loader import library_names, load_case
+
+    names = library_names()
+    width = max(len(name) for name in names)
+    for name in names:
+        print(f"{name:<{width}}  {load_case(name).title}")
+    return 0
+
+
+@app.command
+def solve(
+    case: str,
+    /,
+    *,
+    model: Literal["rod", "reference"] = "rod",
+    level: Level = None,
+    order: Order = None,
+    json: Annotated[bool, Parameter(name="--json", negative=())] = False,
+) -> int:
+    """Solve a case with one of the two models.
+
+    Parameters
+    ----------
+    case : name of a case of the library, or path of a case file
+    model : the rod model, or the 3D reference
+    level : k of the rod model h_k, 1 to 12; the case file's where it is not given
+    order : order p of the rod model along the rods, 2 to 20; the case file's where it is not given
+    json : print exactly one JSON object, described by `rodcheck schema result`
+    """
+    from cases.loader import load_case
+
+    loaded = load_case(case)
+    if model == "reference" and not (level is None and order is None):
+        raise InputError("--level and --order belong to the rod model; leave them out with --model reference")
+    from reports.progress import status
+    from reports.result import result
+    from reports.runner import run_reference, run_rod
+
+    with status(f"{loaded.name}: {model}"):
+        answer = run_rod(loaded, level, order) if model == "rod" else run_reference(loaded)
+    if json:
+        quantities = answer.quantities
+        print(
+            result(
+                loaded.name, model, answer.level, answer.order, quantities, answer.total_seconds
+            ).model_dump_json()
+        )
+    else:
+        from reports.tables import print_run
+
+        print_run(loaded, answer)
+    if not answer.quantities.converged:
+        print(f"rodcheck: {loaded.name}: not converged: {answer.quantities.outcome}", file=sys.stderr)
+        return NOT_PASSED
+    return 0
+
+
+@app.command
+def compare(*cases: str) -> int:
+    """Solve cases both ways and print how far apart the answers are.
+
+    Parameters
+    ----------
+    cases : names of cases of the library, or paths of case files
+    """
+    if not cases:
+        raise InputError("compare: name at least one case; `rodcheck list` prints those of the library")
+    from reports.tables import print_comparison
+
+    runs = _run_all(_load_all(cases))
+    for run in runs:
+        print_comparison(run)
+    return _exit_code(runs)
+
+
+@app.command
+def report(*cases: str, output: Path = Path("report")) -> int:
+    """Solve cases both ways and write one self-contained page, with the results as JSON beside it.
+
+    Parameters
+    ----------
+    cases : names of cases of the library, or paths of case files; without any, the whole library
+    output : folder for index.html and the results
+    """
+    from cases.loader import library_names
+
+    loaded = _load_all(cases or library_names())
+    if output.exists() and not output.is_dir():
+        raise InputError(f"--output: found the file {output}; give a folder")
+    from reports.site import write_report
+
+    runs = _run_all(loaded)
+    try:
+        page = write_report(runs, output)
+    except OSError as error:
+        raise InputError(
+            f"--output: cannot write to {output} ({error.strerror}); give another folder"
+        ) from error
+    print(page)
+    return _exit_code(runs)
+
+
+@schema_app.command(name="result")
+def schema_result() -> int:
+    """Print the JSON Schema of what `rodcheck solve --json` prints."""
+    from reports.result import Result
+
+    print(json.dumps(Result.model_json_schema(), indent=2))
+    return 0
+
+
+@schema_app.command(name="case")
+def schema_case() -> int:
+    """Print the JSON Schema of a case file."""
+    from cases.schema import case_schema
+
+    print(json.dumps(case_schema(), indent=2))
+    return 0
+
+
+def _load_all(names: Sequence[str]) -> list[Case]:
+    """Load every case before any is solved, so that a wrong name costs no time."""
+    from cases.loader import load_case
+
+    cases = [load_case(name) for name in names]
+    for index, case in enumerate(cases):
+        if any(case.name == other.name for other in cases[:index]):
+            raise InputError(f"found the case '{case.name}' twice; name each case once")
+    return cases
+
+
+def _run_all(cases: Sequence[Case]) -> list[CaseRun | Failure]:
+    from reports.progress import run_with_progress
+
+    return run_with_progress(cases)
+
+
+def _exit_code(runs: Sequence[CaseRun | Failure]) -> int:
+    from reports.runner import passed
+
+    return 0 if all(passed(run) for run in runs) else NOT_PASSED

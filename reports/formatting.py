@@ -1,0 +1,71 @@
+"""How numbers and comparisons are written, on the terminal and on the page alike."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from cases.case import QUANTITIES
+from reports.quantities import DEFINITIONS
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from cases.case import Quantity
+    from reports.comparison import Comparison, Kind
+    from reports.solution import Model
+
+MODEL_NAMES: dict[Model, str] = {"rod": "rod model", "reference": "3D"}
+KIND_NAMES: dict[Kind, str] = {
+    "reference": "3D of this run",
+    "3d converged": "independent 3D",
+    "published": "published",
+}
+NOTHING = "none"
+
+
+def number(value: float | None, digits: int = 6) -> str:
+    """A number with so many significant digits and no exponent where it can be read without one."""
+    if value is None:
+        return NOTHING
+    magnitude = abs(value)
+    if magnitude != 0.0 and not 1e-4 <= magnitude < 1e7:
+        return f"{value:.{digits - 1}e}"
+    decimals = digits - 1
+    if magnitude >= 1.0:
+        decimals = max(0, digits - len(str(int(magnitude))))
+    text = f"{value:.{decimals}f}"
+    return text.replace("-", "\u2212")
+
+
+def stretches(edges: Sequence[float]) -> str:
+    """Contact edges, start and end of each stretch in turn, mm."""
+    pairs = zip(edges[::2], edges[1::2], strict=True)
+    return ", ".join(f"{start:.2f} to {end:.2f}" for start, end in pairs) or NOTHING
+
+
+def values(quantity: Quantity, numbers: Sequence[float]) -> str:
+    """The numbers of a comparison, without unit."""
+    if quantity in ("contact_edges", "contact_edges_outer"):
+        return stretches(numbers)
+    return ", ".join(number(value, 5) for value in numbers) or NOTHING
+
+
+def measure(quantity: Quantity, value: float | None) -> str:
+    """A difference, uncertainty or tolerance with its unit: in per cent where the quantity's are relative."""
+    if value is None:
+        return "unknown"
+    kind = QUANTITIES[quantity]
+    return f"{100.0 * value:.2g} %" if kind.relative else f"{value:.2g} {kind.unit}"
+
+
+def title(comparison: Comparison) -> str:
+    """What is compared: quantity, rod or pair, and the point where there is one."""
+    name = f"{DEFINITIONS[comparison.quantity].title}, {comparison.of}"
+    if comparison.point is None:
+        return name
+    return f"{name} at ({', '.join(f'{coordinate:g}' for coordinate in comparison.point)})"
+
+
+def seconds(value: float) -> str:
+    """A duration with the unit that suits it."""
+    return f"{1000.0 * value:.0f} ms" if value < 1.0 else f"{value:.1f} s"

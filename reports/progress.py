@@ -1,0 +1,45 @@
+"""Progress on standard error, shown where that is a terminal."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from rich.console import Console
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
+
+from reports.runner import STEPS, run_cases
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from contextlib import AbstractContextManager
+
+    from cases.case import Case
+    from reports.runner import CaseRun, Failure
+
+
+def status(text: str) -> AbstractContextManager[object]:
+    """A spinner with a text while something of unknown length goes on."""
+    return Console(stderr=True).status(text)
+
+
+def run_with_progress(cases: Sequence[Case]) -> list[CaseRun | Failure]:
+    """Run cases one after the other behind a progress bar."""
+    console = Console(stderr=True)
+    columns = (
+        TextColumn("{task.description}"),
+        BarColumn(),
+        MofNCompleteColumn(),
+        TimeElapsedColumn(),
+    )
+    with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as bars:
+        task = bars.add_task("", total=STEPS * len(cases))
+
+        def begun(case: Case, what: str) -> None:
+            bars.update(task, description=f"{case.name}: {what}")
+            bars.advance(task)
+
+        runs = []
+        for index, run in enumerate(run_cases(cases, begun), start=1):
+            bars.update(task, completed=STEPS * index)
+            runs.append(run)
+    return runs

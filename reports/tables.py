@@ -1,0 +1,121 @@
+"""What `rodcheck solve` and `rodcheck compare` print for people."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from rich.console import Console
+from rich.table import Table
+
+from cases.case import QUANTITIES
+from reports.formatting import (
+    KIND_NAMES,
+    MODEL_NAMES,
+    measure,
+    number,
+    seconds,
+    stretches,
+    title,
+    values,
+)
+from reports.runner import Failure
+
+if TYPE_CHECKING:
+    from cases.case import Case
+    from reports.comparison import Verdict
+    from reports.runner import CaseRun, Run
+
+# Tables are never narrower than this, also where the output is a file.
+WIDTH = 150
+STYLES: dict[Verdict, str] = {"pass": "green", "fail": "bold red", "not resolved": "yellow"}
+
+
+def _console() -> Console:
+    console = Console(highlight=False)
+    return console if console.is_terminal else Console(highlight=False, width=WIDTH)
+
+
+def _cost(run: Run) -> str:
+    quantities = run.quantities
+    return (
+        f"{quantities.unknowns} unknowns, {seconds(quantities.setup_seconds)} set-up, "
+        f"{seconds(quantities.solve_seconds)} solve, {seconds(run.total_seconds)} in all"
+    )
+
+
+def _model(run: Run) -> str:
+    return f"rod model h{run.level}, p = {run.order}" if run.model == "rod" else "3D reference"
+
+
+def print_run(case: Case, run: Run) -> None:
+    """Print one model's answer to a case."""
+    console, quantities = _console(), run.quantities
+    console.print(f"[bold]{case.title}[/] ({case.name}), {_model(run)}: {quantities.outcome}")
+    console.print(f"{_cost(run)}; {quantities.contact_solutions} contact solutions")
+    contacts = Table(
+        "contact", "force, N", "centre, mm", "edges middle, mm", "edges outer, mm", "penetration, mm"
+    )
+    for contact in quantities.contacts:
+        contacts.add_row(
+            contact.pair,
+            number(contact.force),
+            number(contact.centre),
+            stretches(np.ravel(contact.edges).tolist()),
+            stretches(np.ravel(contact.edges_outer).tolist()),
+            f"{contact.penetration:.2g}",
+        )
+    rods = Table(
+        "rod",
+        "largest deflection, mm",
+        "clamp moment (equilibrium), N mm",
+        "clamp moment (stress), N mm",
+        "max. bending stress M/W, MPa",
+    )
+    for rod in quantities.rods:
+        rods.add_row(
+            rod.rod,
+            number(float(np.linalg.norm(rod.displacement, axis=0).max())),
+            number(rod.end_moment_equilibrium),
+            number(rod.end_moment_stress),
+            number(rod.max_bending_stress, 5),
+        )
+    if quantities.contacts:
+        console.print(contacts)
+    console.print(rods)
+    console.print(
+        f"strain energy {number(quantities.strain_energy)} N mm, "
+        f"equilibrium residual {quantities.equilibrium_residual:.1e}"
+    )
+
+
+def print_comparison(run: CaseRun | Failure) -> None:
+    """Print what a case was held against, and the verdicts."""
+    console = _console()
+    console.print(f"[bold]{run.case.title}[/] ({run.case.name})")
+    if isinstance(run, Failure):
+        console.print(f"[bold red]failed[/]: {run.reason}\n")
+        return
+    for answer in (run.rod, run.references[-1]):
+        outcome = "" if answer.quantities.converged else f" [bold red]{answer.quantities.outcome}[/]"
+        console.print(f"{_model(answer)}: {_cost(answer)}, {answer.peak_memory:.0f} MB{outcome}")
+    table = Table(
+        "quantity", "of", "value", "against", "reference", "difference", "uncertainty", "tolerance", "verdict"
+    )
+    for found in run.comparisons:
+        unit = QUANTITIES[found.quantity].unit
+        table.add_row(
+            title(found),
+            MODEL_NAMES[found.model],
+            f"{values(found.quantity, found.value)} {unit}",
+            KIND_NAMES[found.kind],
+            f"{values(found.quantity, found.reference)} {unit}",
+            measure(found.quantity, found.difference),
+            "as printed" if found.kind == "published" else measure(found.quantity, found.uncertainty),
+            measure(found.quantity, found.tolerance),
+            f"[{STYLES[found.verdict]}]{found.verdict}[/]",
+        )
+    console.print(table)
+    for reason in dict.fromkeys(found.reason for found in run.comparisons if found.reason):
+        console.print(f"not resolved: {reason}")
+    console.print()
