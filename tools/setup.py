@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import hashlib
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -21,7 +22,8 @@ STAMP = VENV / "rodcheck-ready"
 # What decides whether `.venv` is up to date.
 INPUTS = ("requirements.lock", "pyproject.toml", "tools/setup.py")
 
-# Debian's names. gmsh's wheel links the first seven; pyvista draws off screen with the others.
+# Debian's names: what a bare system lacks for gmsh (the first eight) and for pyvista, which draws off screen
+# through EGL and crashes without it.
 SYSTEM_PACKAGES = [
     "libglu1-mesa",
     "libxcursor1",
@@ -30,8 +32,8 @@ SYSTEM_PACKAGES = [
     "libxrender1",
     "libfontconfig1",
     "libgomp1",
-    "libegl1",
     "libgl1",
+    "libegl1",
     "libgl1-mesa-dri",
 ]
 
@@ -79,8 +81,9 @@ def run_or_stop(what: str, command: list[str], environment: dict[str, str] | Non
 
 
 def last_lines(text: str, count: int) -> str:
-    """Return the last lines of a text that are not empty."""
-    return "\n".join([line for line in text.splitlines() if line.strip()][-count:])
+    """Return the last lines of a text that are not empty, without colours."""
+    plain = re.sub("\x1b\\[[0-9;]*m", "", text)
+    return "\n".join([line.strip() for line in plain.splitlines() if line.strip()][-count:])
 
 
 def version_of(python: str) -> tuple[int, ...] | None:
@@ -119,9 +122,9 @@ def install_system_packages(packages: list[str], reason: str) -> None:
     prefix = apt_prefix()
     names = " ".join(packages)
     if prefix is None and shutil.which("apt-get"):
-        sudo = "sudo " if os.geteuid() != 0 else ""
-        command = f"{sudo}apt-get update && {sudo}apt-get install -y --no-install-recommends {names}"
-        raise SetupError(f"{reason}; type this and run make again:\n\n    {command}")
+        command = f"apt-get update && apt-get install -y --no-install-recommends {names}"
+        root = "sudo sh -c" if shutil.which("sudo") else "su -c"
+        raise SetupError(f"{reason}; type this and run make again:\n\n    {root} '{command}'")
     if prefix is None:
         raise SetupError(f"{reason}; install what Debian calls {names}, and run make again")
     say(f"{reason}; installing {names}")
@@ -162,7 +165,7 @@ def make_venv() -> None:
 
 def install_packages() -> None:
     """Install the pinned packages, and this project so that edits take effect at once."""
-    say("installing the packages of requirements.lock")
+    say("installing the packages of requirements.lock (about a minute)")
     pip = [str(VENV_PYTHON), "-m", "pip", "--disable-pip-version-check"]
     run_or_stop("installing requirements.lock", [*pip, "install", "--quiet", "-r", "requirements.lock"])
     # The lock has all that this project needs, its build tool included: nothing else is fetched.
