@@ -18,7 +18,7 @@ from reports.geometry import centre_line_points, contact_limits, pair_axis
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from cases.scene import Clamp, ContactPair, End, Rod, Scene, Vector
+    from cases.scene import ContactPair, End, Rod, Scene, Vector
     from reports.solution import Array, ContactProfile, Solution
 
 AXES = ("X", "Y", "Z")
@@ -324,32 +324,33 @@ def _edges(
 
 
 def rod_quantities(solution: Solution, rod: Rod, station: Array) -> RodQuantities:
-    """Deflection and resultants of one rod at the stations (arc length, mm, shape (n,))."""
-    clamps = [support for support in solution.scene.supports if support.rod == rod.name]
+    """Deflection and resultants of one rod.
+
+    Parameters
+    ----------
+    station : arc length, mm, from 0 to the rod's length, shape (n,)
+    """
+    equilibrium = equilibrium_resultants(solution, rod, station)
+    stress = solution.section_resultants(rod.name, station)
+    clamped = [
+        0 if clamp.end == "start" else -1 for clamp in solution.scene.supports if clamp.rod == rod.name
+    ]
     end_moment_equilibrium = end_moment_stress = max_bending_stress = None
-    if clamps:
-        ends = np.array([clamp_station(rod, clamp) for clamp in clamps])
-        moments = equilibrium_resultants(solution, rod, ends)[3]
-        largest = int(np.argmax(np.abs(moments)))
-        end_moment_equilibrium = float(moments[largest])
-        end_moment_stress = float(solution.section_resultants(rod.name, ends[largest : largest + 1])[3, 0])
+    if clamped:
+        end = max(clamped, key=lambda index: abs(float(equilibrium[3, index])))
+        end_moment_equilibrium, end_moment_stress = float(equilibrium[3, end]), float(stress[3, end])
         max_bending_stress = abs(end_moment_stress) / section_modulus(rod)
     return RodQuantities(
         rod=rod.name,
         station=station,
         position=centre_line_points(rod, station),
         displacement=solution.displacement(rod.name, station),
-        equilibrium=equilibrium_resultants(solution, rod, station),
-        stress=solution.section_resultants(rod.name, station),
+        equilibrium=equilibrium,
+        stress=stress,
         end_moment_equilibrium=end_moment_equilibrium,
         end_moment_stress=end_moment_stress,
         max_bending_stress=max_bending_stress,
     )
-
-
-def clamp_station(rod: Rod, clamp: Clamp) -> float:
-    """Arc length of a clamped end, mm."""
-    return 0.0 if clamp.end == "start" else rod.length
 
 
 def section_modulus(rod: Rod) -> float:

@@ -6,32 +6,28 @@ killed, never stops the others.
 
 from __future__ import annotations
 
-import multiprocessing
 import resource
-import signal
 import statistics
 import sys
 import time
-import traceback
 from dataclasses import dataclass, replace
 from functools import partial
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from reports.case_comparison import case_comparisons, evaluation_points
 from reports.comparison import Extrapolation
+from reports.processes import ProcessFailed, in_own_process
 from reports.quantities import evaluate
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
-    from multiprocessing.connection import Connection
 
     from cases.case import Case
     from reports.comparison import Comparison
+    from reports.processes import Progress
     from reports.quantities import Quantities
     from reports.solution import Model
 
-    Progress = Callable[[str], None]
 
 # The rod model answers in milliseconds; its seconds are the median of this many runs.
 ROD_REPEATS = 5
@@ -176,59 +172,10 @@ def passed(run: CaseRun | Failure) -> bool:
 def run_cases(cases: Sequence[Case], progress: Callable[[Case, str], None]) -> Iterator[CaseRun | Failure]:
     """Run cases one after the other, each in its own process; a failure is yielded, not raised."""
     for case in cases:
-        yield in_own_process(run_case, case, partial(progress, case))
-
-
-def in_own_process(
-    work: Callable[[Case, Progress], CaseRun], case: Case, progress: Progress
-) -> CaseRun | Failure:
-    """The result of `work(case, progress)`, done in a process of its own, or why there is none."""
-    context = multiprocessing.get_context("spawn")
-    receiver, sender = context.Pipe(duplex=False)
-    process = context.Process(target=_worker, args=(work, case, sender), daemon=True)
-    process.start()
-    sender.close()
-    try:
-        while True:
-            kind, content = receiver.recv()
-            if kind == "progress":
-                progress(content)
-            elif kind == "failed":
-                return Failure(case, content)
-            else:
-                run: CaseRun = content
-                return run
-    except EOFError:
-        process.join()
-        code = process.exitcode
-        killed = " (signal 9: perhaps for lack of memory)" if code == -signal.SIGKILL else ""
-        return Failure(case, f"its process ended early with exit code {code}{killed}")
-    finally:
-        receiver.close()
-        if process.is_alive():
-            process.terminate()
-        process.join()
-
-
-def _worker(work: Callable[[Case, Progress], CaseRun], case: Case, sender: Connection) -> None:
-    # Ctrl-C is the parent's to answer; standard output belongs to it too.
-    signal.signal(signal.SIGINT, signal.SIG_DFL)
-    try:
-        run = work(case, lambda what: sender.send(("progress", what)))
-        sender.send(("done", run))
-    except Exception as error:  # noqa: BLE001 (whatever went wrong, the other cases go on)
-        sender.send(("failed", failure_reason(error)))
-
-
-def failure_reason(error: BaseException) -> str:
-    """An exception in one line: what it says, or, for one that nobody meant to raise, also where it came from."""
-    from cases.scene import SceneError
-
-    text = " ".join(str(error).split())
-    if isinstance(error, SceneError):
-        return text
-    where = traceback.extract_tb(error.__traceback__)[-1]
-    return f"{type(error).__name__}: {text} ({Path(where.filename).name}, line {where.lineno})"
+        try:
+            yield in_own_process(run_case, case, partial(progress, case))
+        except ProcessFailed as error:
+            yield Failure(case, str(error))
 
 
 def _peak_memory() -> float:
