@@ -66,9 +66,7 @@ class Complementarity:
     steps: int
 
 
-def contact_nodes(
-    scene: Scene, pair: ContactPair, borders: dict[str, Borders], symmetric: bool
-) -> ContactNodes:
+def contact_nodes(scene: Scene, pair: ContactPair, borders: dict[str, Borders], symmetric: bool) -> ContactNodes:
     """Contact nodes of a pair on meshes with the given element borders.
 
     Parameters
@@ -83,7 +81,7 @@ def contact_nodes(
     station, along_weight = _inside(own.s, *overlap.first[0])
     lateral, across_weight = _inside(across, max(overlap.first[1][0], across[0]), overlap.first[1][1])
     points = np.stack([np.repeat(station, len(lateral)), np.tile(lateral, len(station))])
-    opposite = overlap.matrix @ points + overlap.shift[:, None]
+    opposite = overlap.sign[:, None] * points + overlap.shift[:, None]
     if symmetric:  # rods with opposite tangents have opposite x
         opposite[1] = np.abs(opposite[1])
     return ContactNodes(
@@ -91,9 +89,7 @@ def contact_nodes(
         lateral=lateral,
         area=np.outer(along_weight, across_weight),
         first=_face_rows(own, first.normal_axis, first.side, -float(first.side), points),
-        second=_face_rows(
-            borders[pair.second.rod], second.normal_axis, second.side, -float(second.side), opposite
-        ),
+        second=_face_rows(borders[pair.second.rod], second.normal_axis, second.side, -float(second.side), opposite),
     )
 
 
@@ -117,9 +113,7 @@ def _face_rows(borders: Borders, normal_axis: int, side: int, sign: float, point
     unknown = 3 * (plane[:, None] * (n_x * n_y) + node[None, :]) + normal_axis
     value = sign * shape_functions(xi_along)[:, None] * shape_functions(xi_across)[None, :]
     row = np.broadcast_to(np.arange(points.shape[1]), value.shape)
-    rows = csc_array(
-        (value.ravel(), (row.ravel(), unknown.ravel())), shape=(points.shape[1], 3 * n_x * n_y * n_s)
-    )
+    rows = csc_array((value.ravel(), (row.ravel(), unknown.ravel())), shape=(points.shape[1], 3 * n_x * n_y * n_s))
     rows.data[np.abs(rows.data) < 1e-13] = 0.0
     rows.eliminate_zeros()
     return rows
@@ -128,9 +122,9 @@ def _face_rows(borders: Borders, normal_axis: int, side: int, sign: float, point
 def solve_complementarity(matrix: Array, offset: Array, active: NDArray[np.bool_]) -> Complementarity:
     """F >= 0, w = offset + matrix F >= 0, F^T w = 0 for a symmetric positive definite matrix.
 
-    Block principal pivoting: all nodes of the wrong sign change sides at once; when that stops making progress,
-    only the last of them does, which ends for every positive definite matrix (J. J. Judice, F. M. Pires, Computers
-    and Operations Research 21 (1994) 587-596).
+    Block principal pivoting: all nodes of the wrong sign change sides at once; when that stops making
+    progress, only the last of them does, which ends for every positive definite matrix (J. J. Judice,
+    F. M. Pires, Computers and Operations Research 21 (1994) 587-596).
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Stiffness of a rod of 27-node hexahedra (Hooke's law, small strains), assembled a layer of elements at a time.
+"""Stiffness of a rod of 27-node hexahedra (Hooke's law, small strains), assembled by layers of elements.
 
 Element matrices come from the basis gradients of scikit-fem's `ElementHex2` in one batched product. Boxes of
 the same shape share one matrix, and layers of the same thickness share one layer matrix.
@@ -43,7 +43,7 @@ class LayeredStiffness:
     @property
     def plane_size(self) -> int:
         """Unknowns of one plane, m."""
-        return self.matrices.shape[1] // 3
+        return int(self.matrices.shape[1]) // 3
 
     def apply(self, displacement: Array) -> Array:
         """Internal forces K u.
@@ -51,9 +51,7 @@ class LayeredStiffness:
         displacement : mm, shape (n_planes, m); the result, N, has the same shape
         """
         layers = len(self.kind)
-        gathered = np.stack(
-            [displacement[position : position + 2 * layers : 2] for position in range(3)], axis=1
-        )
+        gathered = np.stack([displacement[position : position + 2 * layers : 2] for position in range(3)], axis=1)
         force = np.empty((layers, 3 * self.plane_size))
         for kind in range(len(self.matrices)):
             members = self.kind == kind
@@ -89,7 +87,7 @@ def element_stiffness(mesh: MeshHex, elements: IntArray, material: Material) -> 
     laplacian = mu * np.trace(products, axis1=2, axis2=4)
     for component in range(3):
         stiffness[:, :, component, :, component] += laplacian
-    return stiffness.reshape(len(elements), 81, 81)
+    return np.asarray(stiffness.reshape(len(elements), 81, 81))
 
 
 def layered_stiffness(mesh: MeshHex, borders: Borders, material: Material) -> LayeredStiffness:
@@ -97,9 +95,7 @@ def layered_stiffness(mesh: MeshHex, borders: Borders, material: Material) -> La
     sizes = [np.diff(axis) for axis in (borders.x, borders.y, borders.s)]
     n_x, n_y = len(sizes[0]), len(sizes[1])
     # equal up to round-off is equal
-    different = [
-        np.unique(np.round(size / size.max(), 11), return_index=True, return_inverse=True) for size in sizes
-    ]
+    different = [np.unique(np.round(size / size.max(), 11), return_index=True, return_inverse=True) for size in sizes]
     (_, first_x, of_x), (_, first_y, of_y), (_, first_s, of_s) = different
     shape = (len(first_s), len(first_y), len(first_x))
     representatives = ((first_s[:, None, None] * n_y + first_y[:, None]) * n_x + first_x).ravel()

@@ -68,8 +68,8 @@ def _backward(factor: Array, right_side: Array) -> Array:
 def _condense(blocks: list[list[Array]], clamped: tuple[bool, bool]) -> tuple[Array, Array, Array]:
     """Eliminate the middle of a layer whose 3 x 3 blocks are given in the order of elimination.
 
-    Returns L_m, L_m^-1 K_m,(first, last) and the stiffness condensed onto the first and last plane. A clamped plane
-    does not couple and gets the identity, so that its displacement is zero under zero force.
+    Returns L_m, L_m^-1 K_m,(first, last) and the stiffness condensed onto the first and last plane. A clamped
+    plane does not couple and gets the identity, so that its displacement is zero under zero force.
     """
     size = len(blocks[1][1])
     factor = _cholesky(blocks[1][1])
@@ -110,18 +110,12 @@ def factorise(
     key[1, 0], key[2, -1] = clamped_first, clamped_last
     different, kind = np.unique(key, axis=1, return_inverse=True)
     order = (2, 1, 0) if reverse else (0, 1, 2)
-    middle, middle_coupling, condensed = [], [], []
+    parts = []
     for which, at_first, at_last in different.T:
         matrix = stiffness.matrices[which]
-        blocks = [
-            [matrix[np.ix_(full * row + free, full * column + free)] for column in order] for row in order
-        ]
-        for store, part in zip(
-            (middle, middle_coupling, condensed),
-            _condense(blocks, (bool(at_first), bool(at_last))),
-            strict=True,
-        ):
-            store.append(part)
+        blocks = [[matrix[np.ix_(full * row + free, full * column + free)] for column in order] for row in order]
+        parts.append(_condense(blocks, (bool(at_first), bool(at_last))))
+    middle, middle_coupling, condensed = zip(*parts, strict=True)
     border, border_coupling = [], []
     carried = np.zeros((size, size))
     for which in kind:
@@ -160,13 +154,9 @@ def solve(factor: LayeredFactor, force: Array) -> Array:
     for layer in range(len(factor.kind) - 1, -1, -1):
         which = factor.kind[layer]
         start, inside, end = 2 * layer, 2 * layer + 1, 2 * layer + 2
-        state[start] = _backward(
-            factor.border[layer], state[start] - factor.border_coupling[layer] @ state[end]
-        )
+        state[start] = _backward(factor.border[layer], state[start] - factor.border_coupling[layer] @ state[end])
         borders = np.concatenate([state[start], state[end]])
-        state[inside] = _backward(
-            factor.middle[which], state[inside] - factor.middle_coupling[which] @ borders
-        )
+        state[inside] = _backward(factor.middle[which], state[inside] - factor.middle_coupling[which] @ borders)
     result = state[:, :, 0]
     return result[::-1].copy() if factor.reverse else result
 
@@ -176,7 +166,8 @@ def compliance(factor: LayeredFactor, forces: csc_array) -> Array:
 
     Parameters
     ----------
-    forces : F, one load a column, N, on the free unknowns, zero on clamped planes, shape (n_planes m, n_loads)
+    forces : F, one load a column, N, on the free unknowns, zero on clamped planes,
+        shape (n_planes m, n_loads)
 
     Returns
     -------
@@ -193,9 +184,7 @@ def compliance(factor: LayeredFactor, forces: csc_array) -> Array:
     order = np.argsort(reached, kind="stable")
     rank = np.empty(count, dtype=np.int64)
     rank[order] = np.arange(count)
-    loads = csc_array(
-        (entries.data, (plane * size + unknown, rank[entries.coords[1]])), shape=forces.shape
-    ).tocsr()
+    loads = csc_array((entries.data, (plane * size + unknown, rank[entries.coords[1]])), shape=forces.shape).tocsr()
     known = np.searchsorted(reached[order], np.arange(planes), side="right")
 
     result = np.zeros((count, count))
@@ -222,7 +211,7 @@ def compliance(factor: LayeredFactor, forces: csc_array) -> Array:
     last[:, : carried.shape[1]] += carried
     state = _forward(factor.border[-1], last)
     result += state.T @ state
-    return result[np.ix_(rank, rank)]
+    return np.asarray(result[np.ix_(rank, rank)])
 
 
 def _rows(loads: csc_array, plane: int, size: int, columns: int) -> Array:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import product
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -43,7 +44,7 @@ def mirrored(field: Field) -> Field:
 
 
 def _sample(field: Field, points: Array, sides: tuple[Side, Side, Side]) -> tuple[Array, Array]:
-    """Displacement, shape (3, n), and its gradient du_a/dx_b, shape (3, 3, n), from one of the elements there."""
+    """Displacement, shape (3, n), and gradient du_a/dx_b, shape (3, 3, n), in one of the elements there."""
     axes = (field.borders.x, field.borders.y, field.borders.s)
     values, derivatives, nodes = [], [], []
     for axis, coordinate, side in zip(axes, points, sides, strict=True):
@@ -69,6 +70,12 @@ def _sample(field: Field, points: Array, sides: tuple[Side, Side, Side]) -> tupl
     return displacement, gradient
 
 
+def _sides(borders: Array, coordinate: Array) -> tuple[Side, ...]:
+    """Sides to sample along one axis: both only if a point lies where two elements meet."""
+    left, right = (locate(borders, coordinate, side)[0] for side in SIDES)
+    return ("left",) if np.array_equal(left, right) else SIDES
+
+
 def displacement(field: Field, points: Array) -> Array:
     """Displacement in the local frame at (x, y, s), mm, shape (3, n)."""
     return _sample(field, points, ("left", "left", "left"))[0]
@@ -76,10 +83,9 @@ def displacement(field: Field, points: Array) -> Array:
 
 def stress(field: Field, material: Material, points: Array) -> Array:
     """Stress at (x, y, s): xx, yy, ss, ys, xs, xy, MPa, shape (6, n); where elements meet, their mean."""
-    gradient = np.mean(
-        [_sample(field, points, (in_x, in_y, in_s))[1] for in_x in SIDES for in_y in SIDES for in_s in SIDES],
-        axis=0,
-    )
+    axes = (field.borders.x, field.borders.y, field.borders.s)
+    in_x, in_y, in_s = (_sides(axis, coordinate) for axis, coordinate in zip(axes, points, strict=True))
+    gradient = np.mean([_sample(field, points, choice)[1] for choice in product(in_x, in_y, in_s)], axis=0)
     lam, mu = lame_parameters(material)
     strain = 0.5 * (gradient + gradient.transpose(1, 0, 2))
     tensor = 2.0 * mu * strain + lam * np.einsum("aan->n", strain) * np.eye(3)[:, :, None]
@@ -87,7 +93,7 @@ def stress(field: Field, material: Material, points: Array) -> Array:
 
 
 def section_resultants(field: Field, material: Material, station: Array) -> Array:
-    """N, Q1, Q2, M1, M2, T (`reports.solution`) by Gauss points in every element of the section, shape (6, n).
+    """N, Q1, Q2, M1, M2, T (`reports.solution`) by Gauss points in the section's elements, shape (6, n).
 
     Three points along each axis integrate the stress of a 27-node box exactly.
     """
@@ -102,6 +108,4 @@ def section_resultants(field: Field, material: Material, station: Array) -> Arra
     station = np.asarray(station, dtype=np.float64)
     points = np.stack([np.tile(x, len(station)), np.tile(y, len(station)), np.repeat(station, len(x))])
     _, _, ss, ys, xs, _ = stress(field, material, points).reshape(6, len(station), len(x))
-    return np.stack(
-        [ss @ area, xs @ area, ys @ area, ss @ (area * y), -ss @ (area * x), (ys * x - xs * y) @ area]
-    )
+    return np.stack([ss @ area, xs @ area, ys @ area, ss @ (area * y), -ss @ (area * x), (ys * x - xs * y) @ area])

@@ -1,4 +1,4 @@
-"""Straight rods in space: local frame, lateral faces, and the rectangle in which the faces of a pair overlap."""
+"""Straight rods in space: local frame, lateral faces, and the rectangle in which faces of a pair overlap."""
 
 from __future__ import annotations
 
@@ -54,21 +54,21 @@ class FaceFrame:
 
 @dataclass(frozen=True)
 class Overlap:
-    """Where two faces of a pair face each other: a rectangle in the coordinates of both.
+    """Where the faces of a pair face each other in its zone: a rectangle in the coordinates of both.
 
-    Coordinates on a face are (s, lateral), mm. A point of the first face lies on the second at
-    `matrix @ (s, lateral) + shift`.
+    Coordinates on a face are (s, lateral), mm; a point of the first face lies on the second at
+    sign * (s, lateral) + shift.
 
     Attributes
     ----------
     first, second : ((s_start, s_end), (lateral_start, lateral_end))
-    matrix : shape (2, 2), a rotation by a multiple of 90 degrees, possibly mirrored
+    sign : +1 or -1 for each coordinate, shape (2,)
     shift : mm, shape (2,)
     """
 
     first: tuple[tuple[float, float], tuple[float, float]]
     second: tuple[tuple[float, float], tuple[float, float]]
-    matrix: Array
+    sign: Array
     shift: Array
 
 
@@ -101,53 +101,42 @@ def face_frame(rod: Rod, face: Face) -> FaceFrame:
     )
 
 
-def _bounds(corners: Array) -> tuple[tuple[float, float], tuple[float, float]]:
-    low, high = corners.min(axis=1), corners.max(axis=1)
-    return (float(low[0]), float(high[0])), (float(low[1]), float(high[1]))
-
-
-def _corners(rectangle: tuple[tuple[float, float], tuple[float, float]]) -> Array:
-    return np.array([[a, b] for a in rectangle[0] for b in rectangle[1]]).T
-
-
 def pair_overlap(scene: Scene, pair: ContactPair) -> Overlap:
-    """Rectangle of the candidate zone in which the second face lies opposite the first.
+    """Part of the candidate zone in which the second face lies opposite the first.
+
+    A scene already sees to it that the second rod accompanies the whole zone.
 
     Raises
     ------
     SceneError
-        if the faces are not parallel and facing, the rods neither parallel nor at right angles, or the faces do
-        not overlap in the zone.
+        if the rods or the faces are not parallel.
     """
     rod_1, rod_2 = scene.rod(pair.first.rod), scene.rod(pair.second.rod)
     face_1, face_2 = face_frame(rod_1, pair.first.face), face_frame(rod_2, pair.second.face)
     key = f"contacts.{pair.name}"
     if np.linalg.norm(face_1.normal + face_2.normal) > ANGLE_TOLERANCE:
-        found = (
-            f"outward normals {np.round(face_1.normal, 6).tolist()} and {np.round(face_2.normal, 6).tolist()}"
-        )
-        raise SceneError(
-            f"{key}.second.face", found, "the 3D reference needs parallel faces that face each other"
-        )
-    basis_1 = np.stack([face_1.tangent, face_1.lateral])
-    basis_2 = np.stack([face_2.tangent, face_2.lateral])
-    matrix = basis_2 @ basis_1.T
-    if np.abs(matrix - np.round(matrix)).max() > ANGLE_TOLERANCE:
-        angle = np.degrees(np.arctan2(abs(matrix[0, 1]), abs(matrix[0, 0])))
-        remedy = "the 3D reference needs rods in contact to be parallel or at right angles"
-        raise SceneError(key, f"rods at {angle:.4g} degrees", remedy)
-    matrix = np.round(matrix)
-    shift = basis_2 @ (rod_frame(rod_1).origin - rod_frame(rod_2).origin)
-    rectangle_2 = ((0.0, rod_2.length), (-face_2.half_width, face_2.half_width))
-    opposite = _bounds(matrix.T @ (_corners(rectangle_2) - shift[:, None]))
-    s_range = (max(pair.zone[0], opposite[0][0]), min(pair.zone[1], opposite[0][1]))
-    lateral_range = (max(-face_1.half_width, opposite[1][0]), min(face_1.half_width, opposite[1][1]))
-    smallest = 1e-6 * rod_1.length
-    if s_range[1] - s_range[0] < smallest or lateral_range[1] - lateral_range[0] < smallest:
-        found = f"{pair.zone[0]:g} .. {pair.zone[1]:g}"
-        raise SceneError(f"{key}.zone", found, f"rod '{rod_2.name}' must lie opposite the zone")
-    first = (s_range, lateral_range)
-    return Overlap(first, _bounds(matrix @ _corners(first) + shift[:, None]), matrix, shift)
+        angle = np.degrees(np.arccos(np.clip(face_1.normal @ face_2.normal, -1.0, 1.0)))
+        found = f"'{pair.second.face}', turned by {angle:.4g} degrees from the first face"
+        remedy = "the 3D reference needs parallel faces that face each other (180 degrees)"
+        raise SceneError(f"{key}.second.face", found, remedy)
+    along = float(face_1.tangent @ face_2.tangent)
+    if abs(along) < 1.0 - 0.5 * ANGLE_TOLERANCE**2:
+        angle = np.degrees(np.arccos(abs(along)))
+        remedy = "the 3D reference needs rods in contact to be parallel"
+        raise SceneError(f"{key}.second.rod", f"'{rod_2.name}' at {angle:.4g} degrees to '{rod_1.name}'", remedy)
+    sign = np.sign(np.array([along, float(face_1.lateral @ face_2.lateral)]))
+    between = rod_frame(rod_1).origin - rod_frame(rod_2).origin
+    shift = np.array([face_2.tangent @ between, face_2.lateral @ between])
+    opposite = np.sort(sign[1] * (np.array([-1.0, 1.0]) * face_2.half_width - shift[1]))
+    lateral = (max(-face_1.half_width, float(opposite[0])), min(face_1.half_width, float(opposite[1])))
+    corners = sign[:, None] * np.array([pair.zone, lateral]) + shift[:, None]
+    (s_start, s_end), (lateral_start, lateral_end) = np.sort(corners, axis=1).tolist()
+    return Overlap(
+        first=(pair.zone, lateral),
+        second=((s_start, s_end), (lateral_start, lateral_end)),
+        sign=sign,
+        shift=shift,
+    )
 
 
 def is_symmetric(scene: Scene) -> bool:
@@ -161,7 +150,6 @@ def is_symmetric(scene: Scene) -> bool:
         if not {pair.first.face, pair.second.face} <= {"top", "bottom"}:
             return False
         overlap = pair_overlap(scene, pair)
-        parallel = abs(overlap.matrix[0, 0]) == 1.0
-        if not parallel or abs(overlap.shift[1]) > 1e-9 * scene.rod(pair.first.rod).section.width:
+        if abs(overlap.shift[1]) > 1e-9 * scene.rod(pair.first.rod).section.width:
             return False
     return True

@@ -1,13 +1,14 @@
 """Where the borders of a rod's elements lie: graded towards clamps, loads and the ends of contact zones.
 
-A rod is first divided into coarse cells, whose lengths grow linearly away from the places that need short ones.
-Refinement k divides every coarse cell into k equal parts along each axis, so that meshes of different k are
-systematically refined: their element sizes are everywhere in the ratio of their k.
+A rod is first divided into coarse cells, whose lengths grow linearly away from the places that need short
+ones. Refinement k divides every coarse cell into k along each axis (equally along the rod, by a fixed smooth
+map over the section), so that meshes of different k are systematically refined: element sizes fall as 1 / k.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -21,13 +22,16 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 
 # lengths of coarse cells as multiples of the smaller side of the section
-CLAMP_CELL = 0.15
-LOAD_CELL = 0.5
+CLAMP_CELL = 0.08
+LOAD_CELL = 0.3
 ZONE_END_CELL = 0.15
 ZONE_CELL = 1.0 / 3.0
-LARGEST_CELL = 1.5
+LARGEST_CELL = 1.2
 SECTION_CELL = 0.5
 GROWTH = 0.5  # increase of the cell length per distance
+# elements get finer towards the border of the section, where clamps make the stress singular: the fraction by
+# which their size there is below the mean (in the limit of many)
+SECTION_GRADING = 0.7
 
 
 @dataclass(frozen=True)
@@ -93,7 +97,7 @@ def rod_borders(scene: Scene, rod: Rod, refinement: int, symmetric: bool) -> Bor
 def _along(breaks: dict[float, float], zones: list[_Zone], largest: float, refinement: int) -> Array:
     places = sorted(breaks)
     parts = [np.array(places[:1])]
-    for start, end in zip(places, places[1:], strict=False):
+    for start, end in pairwise(places):
         middle = 0.5 * (start + end)
         cap = min([zone.size for zone in zones if zone.start < middle < zone.end], default=largest)
         parts.append(_segment(start, end, breaks[start], breaks[end], cap, refinement)[1:])
@@ -119,7 +123,7 @@ def _divide(borders: Array, parts: int) -> Array:
 
 
 def _across(extent: float, inner: list[float], size: float, refinement: int, half: bool) -> Array:
-    """Borders over a width or height: uniform between the borders of contact, always one in the middle."""
+    """Borders over a width or height, one of them in the middle and one at each border of contact."""
     candidates = sorted([-0.5 * extent, 0.0, 0.5 * extent, *inner])
     places = [candidates[0]]
     for place in candidates[1:]:
@@ -127,8 +131,18 @@ def _across(extent: float, inner: list[float], size: float, refinement: int, hal
             places.append(place)
     places[-1] = 0.5 * extent
     parts = [np.array(places[:1])]
-    for start, end in zip(places, places[1:], strict=False):
+    for start, end in pairwise(places):
         cells = max(1, int(np.ceil((end - start) / size - 1e-6)))
-        parts.append(np.linspace(start, end, cells * refinement + 1)[1:])
+        at = np.linspace(0.0, 1.0, cells * refinement + 1)
+        if end == places[-1]:
+            at = _denser_at_one(at)
+        elif start == places[0]:
+            at = 1.0 - _denser_at_one(at)[::-1]
+        parts.append(start + (end - start) * at[1:])
     borders = np.concatenate(parts)
     return borders[borders >= 0.0] if half else borders
+
+
+def _denser_at_one(at: Array) -> Array:
+    """Smooth map of [0, 1] onto itself with slope 1 - SECTION_GRADING at 1."""
+    return at + SECTION_GRADING * np.sin(np.pi * at) / np.pi

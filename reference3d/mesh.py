@@ -45,9 +45,7 @@ def box_mesh(x: Array, y: Array, s: Array) -> MeshHex:
     code = np.array([4, 2, 1]) @ upper.reshape(3, -1).astype(np.int64)
     rank = np.argsort(code.reshape(expected, 8), axis=1)
     corners = np.take_along_axis(hexahedra, rank[:, _CORNERS @ np.array([4, 2, 1])], axis=1)
-    order = np.lexsort(
-        (np.searchsorted(x, centre[0]), np.searchsorted(y, centre[1]), np.searchsorted(s, centre[2]))
-    )
+    order = np.lexsort((np.searchsorted(x, centre[0]), np.searchsorted(y, centre[1]), np.searchsorted(s, centre[2])))
     return MeshHex(np.ascontiguousarray(points), np.ascontiguousarray(corners[order].T))
 
 

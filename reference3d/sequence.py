@@ -39,7 +39,7 @@ def solve_sequence(scene: Scene, progress: Callable[[int, int], None] | None = N
 def formal_order(scene: Scene) -> float:
     """Order with which forces and deflections converge on uniformly refined meshes, 2 lambda.
 
-    Clamps make the stress singular at their edges; whatever the order of the elements, the energy error then falls
-    as h^(2 lambda) (G. Strang, G. J. Fix, An Analysis of the Finite Element Method, 1973, chapter 8).
+    Clamps make the stress singular at their edges; whatever the order of the elements, the energy error then
+    falls as h^(2 lambda) (G. Strang, G. J. Fix, An Analysis of the Finite Element Method, 1973, chapter 8).
     """
     return 2.0 * min(clamp_singularity_exponent(rod.material.poisson_ratio) for rod in scene.rods)

@@ -76,7 +76,7 @@ class ContactProfile:
 class RodResult:
     """What is kept of one rod: displacement field and nodal support forces in the local frame.
 
-    reaction : force and moment on the rod about the section's centre at its start and end, global, shape (2, 6)
+    reaction : force and moment on the rod about the section's centre at start and end, global, shape (2, 6)
     """
 
     rod: Rod
@@ -142,7 +142,7 @@ class Solution:
 
     def reaction(self, rod: str, end: End) -> Array:
         """Force and moment of the support on the rod, global, shape (6,); zero where there is no support."""
-        return self.rods[rod].reaction[0 if end == "start" else 1]
+        return np.asarray(self.rods[rod].reaction[0 if end == "start" else 1])
 
     def contact_points(self, pair: str) -> ContactPoints:
         """State of every contact node of a pair."""
@@ -157,39 +157,22 @@ class Solution:
         )
 
     def contact_profile(self, pair: str) -> ContactProfile:
-        """Nodal pressure along the zone; stations where the second face is missing have none."""
+        """Nodal pressure along the zone; none in the middle if the second face does not reach it."""
         result = self.pairs[pair]
         pressure, lateral = result.pressure, result.lateral
         across = nodal_weights(lateral[::2], float(lateral[0]), float(lateral[-1]))
         width = 2.0 * face_frame(self.scene.rod(result.pair.first.rod), result.pair.first.face).half_width
         middle = int(np.argmin(np.abs(lateral)))
         inside = abs(lateral[middle]) < 1e-9 * width
-        station = result.station
-        rows = np.stack(
-            [
-                pressure[:, middle] if inside else np.zeros(len(station)),
-                pressure @ across / width,
-                np.maximum(pressure[:, 0], pressure[:, -1]),
-            ]
+        rows = (
+            pressure[:, middle] if inside else np.zeros(len(pressure)),
+            pressure @ across / width,
+            np.maximum(pressure[:, 0], pressure[:, -1]),
         )
-        tolerance = 1e-9 * self.scene.rod(result.pair.first.rod).length
-        before = (
-            np.array([result.pair.zone[0]]) if station[0] - result.pair.zone[0] > tolerance else np.zeros(0)
-        )
-        after = (
-            np.array([result.pair.zone[1]]) if result.pair.zone[1] - station[-1] > tolerance else np.zeros(0)
-        )
-        # a face that ends inside the zone ends its pressure in a step
-        station = np.concatenate(
-            [before, station[:1][: len(before)], station, station[-1:][: len(after)], after]
-        )
-        rows = np.pad(rows, ((0, 0), (2 * len(before), 2 * len(after))))
         return ContactProfile(
-            station,
-            self._on_first_face(result.pair, station, np.zeros_like(station)),
-            rows[0],
-            rows[1],
-            rows[2],
+            result.station,
+            self._on_first_face(result.pair, result.station, np.zeros_like(result.station)),
+            *rows,
         )
 
     def _on_first_face(self, pair: ContactPair, station: Array, lateral: Array) -> Array:
@@ -218,7 +201,7 @@ class _Body:
     def free_everywhere(self) -> IntArray:
         """`free` in every plane."""
         planes, size = self.fixed.shape
-        return (size * np.arange(planes)[:, None] + self.free).ravel()
+        return np.asarray((size * np.arange(planes)[:, None] + self.free).ravel())
 
 
 def solve(scene: Scene, refinement: int = DEFAULT_REFINEMENT, located: Solution | None = None) -> Solution:
@@ -227,14 +210,14 @@ def solve(scene: Scene, refinement: int = DEFAULT_REFINEMENT, located: Solution 
     Parameters
     ----------
     refinement : k, elements along each axis of a coarse cell (`grading`); unknowns grow with its third power
-    located : solution of the same scene on a coarser mesh, if there is one, which shows where contact is; solved
-        here on the coarsest mesh if there is none
+    located : solution of the same scene on a coarser mesh, if there is one, which shows where contact is;
+        solved here on the coarsest mesh if there is none
 
     Raises
     ------
     SceneError
-        if the scene is outside what this solver treats: a rod without a clamp, faces that are not parallel and
-        facing, rods in contact at an angle other than 0 or 90 degrees.
+        if the scene is outside what this solver treats: a rod without a clamp, rods in contact that are not
+        parallel, faces of a pair that are not.
     ValueError
         if `refinement` is below 1.
     """
@@ -244,15 +227,16 @@ def solve(scene: Scene, refinement: int = DEFAULT_REFINEMENT, located: Solution 
     begin = time.perf_counter()
     symmetric = is_symmetric(scene)
     # contact is located on the coarsest mesh, so that compliance is computed only where it is needed
+    steps = 0
     if located is None and refinement > 1 and scene.contacts:
         located = solve(scene, 1)
+        steps = located.contact_solutions
     bodies = {rod.name: _body(scene, rod, refinement, symmetric) for rod in scene.rods}
     borders = {name: body.borders for name, body in bodies.items()}
     nodes = [contact_nodes(scene, pair, borders, symmetric) for pair in scene.contacts]
     ready = time.perf_counter()
 
     candidates = [_candidates(pair, grid, located) for pair, grid in zip(scene.contacts, nodes, strict=True)]
-    steps = 0
     while True:
         forces, outcome, tried = _contact_forces(scene, bodies, nodes, candidates)
         steps += tried
@@ -261,9 +245,7 @@ def solve(scene: Scene, refinement: int = DEFAULT_REFINEMENT, located: Solution 
         if not any(miss.any() for miss in missed):
             break
         candidates = [np.ones_like(chosen) for chosen in candidates]
-    return _collect(
-        scene, refinement, symmetric, bodies, nodes, forces, gaps, fields, outcome, steps, (begin, ready)
-    )
+    return _collect(scene, refinement, symmetric, bodies, nodes, forces, gaps, fields, outcome, steps, (begin, ready))
 
 
 def _require_support(scene: Scene) -> None:
@@ -290,9 +272,7 @@ def _body(scene: Scene, rod: Rod, refinement: int, symmetric: bool) -> _Body:
     free = np.flatnonzero(in_plane)
     load = np.zeros(fixed.shape)
     area = rod.section.width * rod.section.height
-    weights = np.outer(
-        *(nodal_weights(axis, float(axis[0]), float(axis[-1])) for axis in (borders.y, borders.x))
-    )
+    weights = np.outer(*(nodal_weights(axis, float(axis[0]), float(axis[-1])) for axis in (borders.y, borders.x)))
     for section_force in scene.loads:
         if section_force.rod == rod.name:
             plane = int(np.argmin(np.abs(s - section_force.position)))
@@ -337,16 +317,14 @@ def _sides(scene: Scene, nodes: list[ContactNodes], rod: Rod) -> list[csc_array 
     """For each pair, the rows of the normal displacement of this rod's face, if it is in the pair."""
     found: list[csc_array | None] = []
     for pair, grid in zip(scene.contacts, nodes, strict=True):
-        found.append(
-            grid.first if pair.first.rod == rod.name else grid.second if pair.second.rod == rod.name else None
-        )
+        found.append(grid.first if pair.first.rod == rod.name else grid.second if pair.second.rod == rod.name else None)
     return found
 
 
 def _contact_forces(
     scene: Scene, bodies: dict[str, _Body], nodes: list[ContactNodes], candidates: list[BoolArray]
 ) -> tuple[list[Array], str, int]:
-    """Nodal contact forces of each pair, the outcome of the contact iteration and the active sets it tried."""
+    """Nodal contact forces of each pair, outcome of the contact iteration, and the active sets it tried."""
     counts = [int(chosen.sum()) for chosen in candidates]
     starts = np.concatenate([[0], np.cumsum(counts)])
     total = int(starts[-1])
@@ -385,9 +363,7 @@ def _respond(
 ) -> tuple[dict[str, tuple[Array, Array]], list[Array]]:
     """Displacement and force of each body, shape (n_planes, m), and the gaps of each pair."""
     fields: dict[str, tuple[Array, Array]] = {}
-    gaps = [
-        np.full(grid.area.size, float(pair.gap)) for pair, grid in zip(scene.contacts, nodes, strict=True)
-    ]
+    gaps = [np.full(grid.area.size, float(pair.gap)) for pair, grid in zip(scene.contacts, nodes, strict=True)]
     for name, body in bodies.items():
         force = body.load.copy()
         sides = _sides(scene, nodes, body.rod)
@@ -474,9 +450,7 @@ def _support_reaction(scene: Scene, body: _Body, nodal: Array, symmetric: bool, 
     return np.asarray((local @ rod_frame(body.rod).axes).ravel())
 
 
-def _pair_result(
-    pair: ContactPair, nodes: ContactNodes, force: Array, gap: Array, symmetric: bool
-) -> PairResult:
+def _pair_result(pair: ContactPair, nodes: ContactNodes, force: Array, gap: Array, symmetric: bool) -> PairResult:
     # in contact the gap follows from the force, free of the cancellation in the difference of displacements
     shape = nodes.area.shape
     area = nodes.area

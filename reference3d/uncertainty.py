@@ -1,6 +1,6 @@
-"""Numerical uncertainty from systematically refined meshes: observed order, extrapolated value, convergence index.
+"""Numerical uncertainty from three systematically refined meshes: observed order, limit, convergence index.
 
-The grid convergence index of Roache as ASME V&V 20-2009, section 2-4, gives it. Works on three values of one
+The grid convergence index of Roache as ASME V&V 20-2009, section 2, gives it. Works on three values of one
 quantity, whatever it is.
 """
 
@@ -28,10 +28,10 @@ class GridConvergence:
     Attributes
     ----------
     value : on the finest mesh
-    behaviour : 'monotone'; 'oscillatory' (differences change sign); 'diverging' (the differences do not fall as
-        any power of the mesh size); 'constant' (equal up to round-off)
-    asymptotic : True if monotone with an observed order of at least half the formal one; only then is the band a
-        grid convergence index with factor 1.25
+    behaviour : 'monotone'; 'oscillatory' (differences change sign); 'diverging' (the differences do not fall
+        as any power of the mesh size); 'constant' (equal up to round-off)
+    asymptotic : True if constant, or monotone with an observed order of at least half the formal one; only
+        then is the band a grid convergence index with factor 1.25
     observed_order : p, nan unless monotone
     extrapolated : limit for vanishing mesh size with the order used; `value` unless asymptotic
     uncertainty : half width of the band about `value` in which the limit is expected, in the quantity's unit
@@ -50,9 +50,9 @@ def grid_convergence(
 ) -> GridConvergence:
     """Convergence of one quantity over three meshes.
 
-    An observed order above the formal one is not trusted: the index then uses the formal order (V&V 20, 2-4.1).
-    Where the sequence oscillates, diverges or converges at less than half the formal order, the band is three times
-    the largest change between any two of the meshes, and nothing is extrapolated.
+    An observed order above the formal one is not trusted: the index then uses the formal order. Where the
+    sequence oscillates, diverges or converges at less than half the formal order, the band is three times the
+    largest change between any two of the meshes, and nothing is extrapolated.
 
     Parameters
     ----------
@@ -98,7 +98,7 @@ def _observed_order(first: float, second: float, sizes: tuple[float, float, floa
     # (h2^p - h3^p) / (h1^p - h2^p) falls from ln(h2/h3) / ln(h1/h2) at p = 0 to 0
     def mismatch(order: float) -> float:
         scaled = [(size / sizes[1]) ** order for size in sizes]
-        return (1.0 - scaled[2]) / (scaled[0] - 1.0) - ratio
+        return float((1.0 - scaled[2]) / (scaled[0] - 1.0) - ratio)
 
     if mismatch(LOWEST_ORDER) <= 0.0:
         return math.nan
@@ -110,8 +110,9 @@ def _observed_order(first: float, second: float, sizes: tuple[float, float, floa
 def clamp_singularity_exponent(poisson_ratio: float) -> float:
     """Exponent lambda of the displacement r^lambda at the edge where a free face meets a clamp at 90 degrees.
 
-    Smallest root of (3 - 4 nu) sin^2(lambda pi / 2) = 4 (1 - nu)^2 - lambda^2 (M. L. Williams, Journal of Applied
-    Mechanics 19 (1952) 526-528, plane strain); 0.711 for nu = 0.3. It is 1, no singularity, for nu = 0.
+    Smallest root of (3 - 4 nu) sin^2(lambda pi / 2) = 4 (1 - nu)^2 - lambda^2 (M. L. Williams, Journal of
+    Applied Mechanics 19 (1952) 526-528, plane strain); 0.711 for nu = 0.3. It is 1 (no singularity)
+    for nu = 0.
     """
 
     def mismatch(exponent: float) -> float:
