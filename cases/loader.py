@@ -82,14 +82,10 @@ def _find(name_or_path: str | Path) -> tuple[Path, str]:
         return path, given
     if exists:
         found = "a folder" if path.is_dir() else "something that is not a file"
-        raise CaseError(
-            f"{given}: found {found}; give the path of a case file or a name that `rodcheck list` prints"
-        )
+        raise CaseError(f"{given}: found {found}; give the path of a case file or a name that `rodcheck list` prints")
     near = _nearest(path.stem, library_names())
     hint = f"did you mean '{near}'" if near else "`rodcheck list` prints the library's names"
-    raise CaseError(
-        f"{_shown(given)}: found neither a case of the library nor a file; {hint}, and a path will do too"
-    )
+    raise CaseError(f"{_shown(given)}: found neither a case of the library nor a file; {hint}, and a path will do too")
 
 
 def _read(path: Path, shown: str) -> dict[str, Any]:
@@ -97,20 +93,14 @@ def _read(path: Path, shown: str) -> dict[str, Any]:
     try:
         content = tomllib.loads(path.read_text(encoding="utf-8-sig"))
     except OSError as error:
-        raise CaseError(
-            f"{shown}: found a file that cannot be read ({error.strerror}); give a readable one"
-        ) from error
+        raise CaseError(f"{shown}: found a file that cannot be read ({error.strerror}); give a readable one") from error
     except UnicodeDecodeError as error:
-        raise CaseError(
-            f"{shown}: found something other than text; a case file is TOML text in UTF-8"
-        ) from error
+        raise CaseError(f"{shown}: found something other than text; a case file is TOML text in UTF-8") from error
     except (ValueError, RecursionError) as error:  # TOMLDecodeError, or an integer of thousands of digits
         reason = "tables nested too deeply" if isinstance(error, RecursionError) else str(error)
         raise CaseError(f"{shown}: found text that is not TOML; mend this: {reason}") from error
     if not content:
-        raise CaseError(
-            f"{shown}: found an empty file; copy a case of the library ({LIBRARY.name}/*.toml) and edit it"
-        )
+        raise CaseError(f"{shown}: found an empty file; copy a case of the library ({LIBRARY.name}/*.toml) and edit it")
     return content
 
 
@@ -170,9 +160,8 @@ def _sentence(problem: ErrorDetails, schema: dict[str, Any]) -> str:
 
 def _key(place: Iterable[str | int]) -> str:
     """Say where in a case file: "loads #1.force #3" is the third component of the first load's force."""
-    return "".join(f" #{part + 1}" if isinstance(part, int) else f".{part}" for part in place).removeprefix(
-        "."
-    )
+    parts = [f" #{part + 1}" if isinstance(part, int) else f".{part}" for part in place]
+    return "".join(parts).removeprefix(".")
 
 
 def _nodes(schema: dict[str, Any], place: Iterable[str | int]) -> Iterator[dict[str, Any]]:
@@ -183,7 +172,8 @@ def _nodes(schema: dict[str, Any], place: Iterable[str | int]) -> Iterator[dict[
         if isinstance(part, int):
             node = node.get("items") or node["prefixItems"][min(part, len(node["prefixItems"]) - 1)]
         else:
-            node = node.get("properties", {}).get(part) or node["additionalProperties"]
+            named = node.get("patternProperties", {}).values()  # tables that the author names
+            node = node.get("properties", {}).get(part) or next(iter(named))
         reference = node.get("$ref")
         if reference:
             # What stands beside a reference says more about this place than what it refers to.
@@ -245,16 +235,10 @@ def _require_known(name: str, names: Iterable[str], key: str, table: str) -> Non
 def _case(name: str, file: CaseFile) -> Case:
     scene = _scene(name, file)
     compare = tuple(_check(f"compare #{i}", table, scene) for i, table in enumerate(file.compare, 1))
-    published = tuple(
-        _published(f"published #{i}", table, scene) for i, table in enumerate(file.published, 1)
-    )
+    published = tuple(_published(f"published #{i}", table, scene) for i, table in enumerate(file.published, 1))
     for index, check in enumerate(compare):
-        twice = any(
-            (check.quantity, check.of, check.point) == (c.quantity, c.of, c.point) for c in compare[:index]
-        )
-        _require(
-            not twice, f"compare #{index + 1}", f"{check.quantity} of {check.of} again", "compare it once"
-        )
+        twice = any((check.quantity, check.of, check.point) == (c.quantity, c.of, c.point) for c in compare[:index])
+        _require(not twice, f"compare #{index + 1}", f"{check.quantity} of {check.of} again", "compare it once")
     independent = None
     if file.independent is not None:
         truths = sorted(path.name for path in TRUTH.glob("*.json"))
@@ -343,9 +327,7 @@ def _check(key: str, table: CompareTable, scene: Scene) -> Check:
     of = _of(key, table, scene)
     if table.quantity == "stress_s":
         if table.point is None:
-            raise SceneError(
-                f"{key}.point", "no such key", "needed: the point [x, y, s] where the stress is compared"
-            )
+            raise SceneError(f"{key}.point", "no such key", "needed: the point [x, y, s] where the stress is compared")
         _require_inside(f"{key}.point", table.point, scene.rod(of))
     else:
         _require(table.point is None, f"{key}.point", table.point, "only stress_s is at a point")
@@ -381,6 +363,4 @@ def _published(key: str, table: PublishedTable, scene: Scene) -> Published:
         _require(len(value) > 0 and len(value) % 2 == 0 and rising, f"{key}.value", table.value, remedy)
     else:
         _require(len(value) == 1, f"{key}.value", table.value, "one value is needed")
-    return Published(
-        table.quantity, of, value, _tolerance(key, table.quantity, table.tolerance), table.source
-    )
+    return Published(table.quantity, of, value, _tolerance(key, table.quantity, table.tolerance), table.source)

@@ -47,9 +47,7 @@ Force = Annotated[float, *_with_unit("N")]
 Stress = Annotated[float, *_with_unit("MPa")]
 PenaltyUnit = Annotated[float, *_with_unit("N/mm^3")]
 Number = Annotated[float, BeforeValidator(_plain_number), WithJsonSchema({"type": "number"})]
-Tolerance = Annotated[
-    str, BeforeValidator(_tolerance), WithJsonSchema({"type": "string", "pattern": QUANTITY_PATTERN})
-]
+Tolerance = Annotated[str, BeforeValidator(_tolerance), WithJsonSchema({"type": "string", "pattern": QUANTITY_PATTERN})]
 Name = Annotated[str, Field(strict=True, pattern=r"^[A-Za-z0-9_][A-Za-z0-9_ .-]*$")]
 Text = Annotated[StrictStr, Field(min_length=1)]
 # The unit of a published value follows from its quantity, so the loader converts it.

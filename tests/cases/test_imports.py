@@ -12,9 +12,7 @@ def modules_after(statement):
     return {name.partition(".")[0] for name in out.stdout.split()}
 
 
-@pytest.mark.parametrize(
-    "statement", ["import cases.scene", "from cases.loader import library_names; library_names()"]
-)
+@pytest.mark.parametrize("statement", ["import cases.scene", "from cases.loader import library_names; library_names()"])
 def test_neither_pydantic_nor_pint_is_imported(statement):
     assert modules_after(statement).isdisjoint({"pydantic", "pint"})
 

@@ -46,9 +46,7 @@ def test_supports_load_and_contact_are_the_papers(name):
 
     scene = load_case(name).scene
 
-    overlap = ContactPair(
-        "overlap", RodFace("lower", "top"), RodFace("upper", "bottom"), (200.0, 300.0), gap, 1e6
-    )
+    overlap = ContactPair("overlap", RodFace("lower", "top"), RodFace("upper", "bottom"), (200.0, 300.0), gap, 1e6)
     assert scene.supports == (Clamp("lower", "start"), Clamp("upper", "end"))
     assert scene.loads == (SectionForce("upper", 166.67, (0.0, -1000.0, 0.0)),)
     assert scene.contacts == (overlap,)

@@ -1,0 +1,417 @@
+"""What a person sees who made a mistake in a case file: one sentence with file, key, find and remedy.
+
+Every mistake is a small edit of a case of the library.
+"""
+
+import re
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from cases.loader import LIBRARY, CaseError, library_names, load_case
+
+GOOD = (LIBRARY / "two-cantilevers-e50-g05.toml").read_text(encoding="utf-8")
+
+
+@pytest.fixture
+def message(tmp_path):
+    """The message of loading a case file of this content."""
+
+    def load(content):
+        path = tmp_path / "mine.toml"
+        path.write_bytes(content if isinstance(content, bytes) else content.encode())
+        with pytest.raises(CaseError) as caught:
+            load_case(path)
+        return str(caught.value).replace(str(tmp_path) + "/", "")
+
+    return load
+
+
+def edited(*edits):
+    """The good case with every (old, new) replaced once."""
+    text = GOOD
+    for old, new in edits:
+        assert old in text
+        text = text.replace(old, new, 1)
+    return text
+
+
+# (what is wrong, edits, key, found, remedy)
+MISTAKES = [
+    # keys
+    ("title missing", [('title = "Two', '# title = "Two')], "title", "no such key", "One line that says"),
+    ("section missing", [('section = "square"\n', "")], "rods.lower.section", "no such key", "the [sections]"),
+    ("rods missing", [("rods.lower", "x.lower"), ("rods.lower", "x.lower")], "x", "unknown key", "the keys"),
+    ("load without force", [("force = [", "# [")], "loads #1.force", "no such key", "three components"),
+    (
+        "misspelt key",
+        [("young_modulus", "youngs_modulus")],
+        "materials.lower.youngs_modulus",
+        "an unknown key",
+        "did you mean 'young_modulus'?",
+    ),
+    (
+        "misspelt table",
+        [("[[supports]]", "[[support]]"), ("[[supports]]", "[[support]]")],
+        "support",
+        "an unknown key",
+        "did you mean 'supports'?",
+    ),
+    (
+        "unknown key",
+        [("[rod_model]", "[rod_model]\ncolour = 3")],
+        "rod_model.colour",
+        "an unknown key",
+        "'level', 'order'",
+    ),
+    # values
+    ("mass for a length", [('width = "15 mm"', 'width = "200 kg"')], "sections.square.width", '"200 kg"', '"0.5 mm"'),
+    ("stress for a gap", [('gap = "0.5 mm"', 'gap = "0.5 GPa"')], "contacts.overlap.gap", '"0.5 GPa"', "length"),
+    ("unknown unit", [('"200 GPa"', '"200 gpa"')], "materials.lower.young_modulus", '"200 gpa"', '"200 GPa"'),
+    ("decimal comma", [('"0.5 mm"', '"0,5 mm"')], "contacts.overlap.gap", '"0,5 mm"', "length"),
+    ("negative width", [('width = "15 mm"', 'width = "-15 mm"')], "sections.square.width", "-15", "must be positive"),
+    ("no height", [('height = "15 mm"', "height = 0")], "sections.square.height", "0", "must be positive"),
+    ("negative gap", [('"0.5 mm"', '"-0.5 mm"')], "contacts.overlap.gap", '"-0.5 mm"', "not negative"),
+    ("infinite length", [('width = "15 mm"', "width = inf")], "sections.square.width", "Infinity", "must be finite"),
+    ("not a number", [("= 0.3", "= nan")], "materials.lower.poisson_ratio", "NaN", "a number"),
+    ("truth value for a number", [("= 0.3", "= true")], "materials.lower.poisson_ratio", "true", "a number"),
+    ("truth value for a length", [('width = "15 mm"', "width = true")], "sections.square.width", "true", "a length"),
+    ("ratio out of range", [("= 0.3", "= 0.5")], "materials.lower.poisson_ratio", "0.5", "between -1 and 0.5"),
+    ("no stiffness", [('"200 GPa"', "0")], "materials.lower.young_modulus", "0", "must be positive"),
+    ("no penalty", [('"1e6 N/mm^3"', "0")], "contacts.overlap.penalty", "0", "must be positive"),
+    ("two components", [('["0 N", "-1 kN", "0 N"]', "[0, 1]")], "loads #1.force", "[0, 1]", "three components"),
+    ("four numbers", [("[300, 0, 0]", "[3, 0, 0, 0]")], "rods.lower.centre_line.end", "[3, 0, 0, 0]", "three"),
+    ("bad component", [('"-1 kN"', '"-1 km"')], "loads #1.force #2", '"-1 km"', "a force"),
+    ("number for a table", [("first = {", "first = 3 #")], "contacts.overlap.first", "3", "such as { rod"),
+    ("text for a list", [("zone = [", 'zone = "200" # [')], "contacts.overlap.zone", '"200"', "two rising"),
+    ("unknown shape", [('"rectangle"', '"circle"')], "sections.square.shape", '"circle"', "'rectangle'"),
+    ("unknown face", [('"top"', '"upper"')], "contacts.overlap.first.face", '"upper"', "'top', 'bottom'"),
+    ("unknown end", [('end = "start"', 'end = "left"')], "supports #1.end", '"left"', "'start' or 'end'"),
+    ("level 0", [("level = 5", "level = 0")], "rod_model.level", "0", "from 1 to 12"),
+    ("level 13", [("level = 5", "level = 13")], "rod_model.level", "13", "from 1 to 12"),
+    ("half a level", [("level = 5", "level = 2.5")], "rod_model.level", "2.5", "whole number"),
+    ("level in words", [("level = 5", 'level = "h5"')], "rod_model.level", '"h5"', "whole number"),
+    ("order 1", [("order = 6", "order = 1")], "rod_model.order", "1", "from 2 to 20"),
+    ("a name that is markup", [("[sections.square]", '[sections."<b>"]')], "sections", '"<b>"', "letters"),
+    # the scene
+    (
+        "unknown section",
+        [('section = "square"', 'section = "sqare"')],
+        "rods.lower.section",
+        '"sqare"',
+        "did you mean 'square'?",
+    ),
+    (
+        "unknown material",
+        [('material = "lower"', 'material = "wood"')],
+        "rods.lower.material",
+        '"wood"',
+        "the [materials] are 'lower', 'upper'",
+    ),
+    (
+        "unknown rod clamped",
+        [('kind = "clamp"\nrod = "lower"', 'kind = "clamp"\nrod = "lowr"')],
+        "supports #1.rod",
+        '"lowr"',
+        "the [rods] are 'lower', 'upper'; did you mean 'lower'?",
+    ),
+    (
+        "unknown rod loaded",
+        [('cross-section\nrod = "upper"', 'cross-section\nrod = "middle"')],
+        "loads #1.rod",
+        '"middle"',
+        "the [rods] are 'lower', 'upper'",
+    ),
+    (
+        "unknown rod in contact",
+        [('{ rod = "lower"', '{ rod = "low"')],
+        "contacts.overlap.first.rod",
+        '"low"',
+        "the [rods] are 'lower', 'upper'",
+    ),
+    (
+        "rod against itself",
+        [('{ rod = "upper"', '{ rod = "lower"')],
+        "contacts.overlap.second.rod",
+        "'lower'",
+        "two different rods",
+    ),
+    (
+        "borders out of order",
+        [("[0, 66.67, 133.33", "[0, 133.33, 66.67")],
+        "rods.lower.element_borders",
+        "[0.0, 133.33, 66.67",
+        "must increase",
+    ),
+    (
+        "borders that end early",
+        [("266.67, 300]", "266.67]")],
+        "rods.lower.element_borders",
+        "0 .. 266.67",
+        "from 0 to 300 mm",
+    ),
+    ("one border", [("[0, 66.67, 133.33, 200, 233.33, 266.67, 300]", "[0]")], "rods.lower", "[0.0]", "two ends"),
+    (
+        "rod without length",
+        [("end = [300, 0, 0]", "end = [0, 0, 0]")],
+        "rods.lower.centre_line.end",
+        "(0.0, 0.0, 0.0)",
+        "must differ",
+    ),
+    (
+        "up along the rod",
+        [("up = [0, 1, 0]", "up = [1, 0, 0]")],
+        "rods.lower.centre_line.up",
+        "(1.0, 0.0, 0.0)",
+        "not along the line",
+    ),
+    (
+        "clamped twice",
+        [('rod = "upper"\nend = "end"', 'rod = "lower"\nend = "start"')],
+        "supports #2",
+        "lower start again",
+        "once",
+    ),
+    ("load outside", [('"166.67 mm"', '"0.4 m"')], "loads #1.position", "400", "from 0 to 300 mm"),
+    ("load before", [('"166.67 mm"', '"-1 mm"')], "loads #1.position", "-1", "from 0 to 300 mm"),
+    (
+        "zone beyond the first rod",
+        [('["200 mm", "300 mm"]', '["200 mm", "320 mm"]')],
+        "contacts.overlap.zone",
+        "200 .. 320",
+        "from 0 to 300 mm",
+    ),
+    (
+        "zone beyond the second rod",
+        [('["200 mm", "300 mm"]', '["180 mm", "300 mm"]')],
+        "contacts.overlap.zone",
+        "180 .. 300",
+        "rod 'upper' lies opposite rod 'lower' from 200 to 300 mm",
+    ),
+    (
+        "zone backwards",
+        [('["200 mm", "300 mm"]', '["300 mm", "200 mm"]')],
+        "contacts.overlap.zone",
+        "300 .. 200",
+        "must rise",
+    ),
+    (
+        "faces that look the same way",
+        [('face = "bottom"', 'face = "top"')],
+        "contacts.overlap.second.face",
+        "'top', whose outward normal is turned by 0 degrees",
+        "face each other",
+    ),
+    (
+        "faces that look away from each other",
+        [('face = "top"', 'face = "x"'), ('face = "bottom"', 'face = "top"'), ('"x"', '"bottom"')],
+        "contacts.overlap.first.face",
+        "'bottom', while rod 'upper' is drawn on the other side",
+        "towards the second rod",
+    ),
+    (
+        "rods side by side",
+        [("[200, 15.5, 0]", "[200, 15.5, 15]"), ("[500, 15.5, 0]", "[500, 15.5, 15]")],
+        "contacts.overlap.second.rod",
+        "'upper', drawn 15 mm aside",
+        "less than 15 mm",
+    ),
+    # what is compared
+    (
+        "unknown quantity",
+        [('quantity = "contact_force"', 'quantity = "force"')],
+        "compare #1.quantity",
+        '"force"',
+        "'contact_force'",
+    ),
+    (
+        "a stress that does not converge",
+        [('quantity = "end_moment_equilibrium"', 'quantity = "max_bending_stress"')],
+        "compare #9.quantity",
+        '"max_bending_stress"',
+        "does not converge",
+    ),
+    (
+        "a rod for a quantity of a contact",
+        [('"contact_force"\ncontact = "overlap"', '"contact_force"\nrod = "upper"')],
+        "compare #1.rod",
+        '"upper"',
+        "contact_force is of a contact",
+    ),
+    (
+        "a quantity of nothing",
+        [('"contact_force"\ncontact = "overlap"', '"contact_force"')],
+        "compare #1.contact",
+        "no such key",
+        "one of 'overlap'",
+    ),
+    (
+        "unknown contact",
+        [('"contact_force"\ncontact = "overlap"', '"contact_force"\ncontact = "overlp"')],
+        "compare #1.contact",
+        '"overlp"',
+        "did you mean 'overlap'?",
+    ),
+    ("absolute for relative", [('"0.3 %"', '"0.3 mm"')], "compare #1.tolerance", '"0.3 mm"', "relative"),
+    ("bare tolerance", [('"0.3 %"', "0.3")], "compare #1.tolerance", "0.3", "with its unit"),
+    ("no tolerance", [('"0.3 %"', '"0 %"')], "compare #1.tolerance", '"0 %"', "must be positive"),
+    ("stress nowhere", [("point = ", "# ")], "compare #10.point", "no such key", "[x, y, s]"),
+    ("stress outside", [("[0, 7.5, 285]", "[0, 8, 285]")], "compare #10.point", "[0.0, 8.0, 285.0]", "+-7.5"),
+    (
+        "compared twice",
+        [('quantity = "contact_edges" ', 'quantity = "contact_centre" '), ('"1 mm"', '"1 mm"')],
+        "compare #3",
+        "contact_centre of overlap again",
+        "once",
+    ),
+    # what is published
+    ("odd edges", [('["200 mm", "207.47 mm"]', '["200 mm"]')], "published #1.value", '["200 mm"]', "in turn"),
+    ("edges as stress", [('"207.47 mm"', '"207.47 MPa"')], "published #1.value", "MPa", "a length"),
+    ("two stresses", [('"124.40 MPa"', "[1, 2]")], "published #2.value", "[1, 2]", "one value"),
+    ("no source", [("source = ", "# ")], "published #1.source", "no such key", "Where the value is printed"),
+    ("unknown truth", [('"e50_g05.json"', '"e5.json"')], "independent", '"e5.json"', "'e50_g05.json'"),
+    ("truth elsewhere", [('"e50_g05.json"', '"../x.json"')], "independent", '"../x.json"', "'e50_g05.json'"),
+]
+
+
+@pytest.mark.parametrize(
+    ("edits", "key", "found", "remedy"),
+    [pytest.param(*mistake[1:], id=mistake[0]) for mistake in MISTAKES],
+)
+def test_a_mistake_is_named_with_file_key_find_and_remedy(message, edits, key, found, remedy):
+    text = message(edited(*edits))
+
+    start, _, rest = text.partition(": found ")
+    assert start.startswith(f"mine.toml: {key}")
+    assert found in rest.partition("; ")[0]
+    assert remedy in rest.partition("; ")[2]
+    assert "\n" not in text
+
+
+def test_a_case_with_no_mistake_loads(tmp_path):
+    path = tmp_path / "mine.toml"
+    path.write_text(GOOD, encoding="utf-8")
+
+    case = load_case(path)
+
+    assert case.name == case.scene.name == "mine"
+    assert case.scene.rods == load_case("two-cantilevers-e50-g05").scene.rods
+
+
+def test_a_small_edit_makes_a_new_case(tmp_path):
+    path = tmp_path / "stiffer.toml"
+    path.write_text(edited(('"50 GPa"', '"0.1 TPa"'), ('gap = "0.5 mm"', "gap = 0.25")), encoding="utf-8")
+
+    scene = load_case(str(path)).scene
+
+    assert scene.rod("upper").material.young_modulus == 100000.0
+    assert scene.contact("overlap").gap == 0.25
+
+
+def test_of_several_problems_the_first_is_told_and_the_others_counted(message):
+    text = message(edited(('"200 GPa"', '"200 kg"'), ("level = 5", "level = 0"), ('width = "15 mm"', 'width = "15 s"')))
+
+    assert text.startswith("mine.toml: materials.lower.young_modulus: found ")
+    assert text.endswith(" (and 2 more problems)")
+
+
+def test_a_misspelt_key_is_not_reported_as_missing_too(message):
+    text = message(edited(("poisson_ratio", "poison_ratio")))
+
+    assert text == ("mine.toml: materials.lower.poison_ratio: found an unknown key; did you mean 'poisson_ratio'?")
+
+
+@pytest.mark.parametrize(
+    ("content", "found", "remedy"),
+    [
+        pytest.param("", "an empty file", "copy a case of the library", id="empty"),
+        pytest.param("# nothing yet\n", "an empty file", "copy a case of the library", id="comments only"),
+        pytest.param("a = \n", "text that is not TOML", "line 1", id="not TOML"),
+        pytest.param(edited(("[[loads]]", "[[loads]")), "text that is not TOML", "line 58", id="broken table"),
+        pytest.param(GOOD + "\n[rods.lower]\n", "text that is not TOML", "'rods', 'lower'", id="rod declared twice"),
+        pytest.param(edited(("0.3", "0.3\npoisson_ratio = 0.3")), "text that is not TOML", "line", id="key twice"),
+        pytest.param("a = " + "[" * 100000, "text that is not TOML", "nested", id="nested too deeply"),
+        pytest.param("a = 1" + "0" * 5000, "text that is not TOML", "digits", id="endless number"),
+        pytest.param(b"\x89PNG\r\n\x1a\n\x00\xff", "something other than text", "TOML", id="binary"),
+    ],
+)
+def test_a_file_that_is_no_case_is_named(message, content, found, remedy):
+    text = message(content)
+
+    assert text.startswith("mine.toml: found ")
+    assert found in text
+    assert remedy in text
+    assert "\n" not in text
+
+
+def test_line_ends_and_byte_order_mark_of_other_systems_do_not_matter(tmp_path):
+    path = tmp_path / "mine.toml"
+    path.write_bytes(b"\xef\xbb\xbf" + GOOD.replace("\n", "\r\n").encode())
+
+    assert load_case(path).scene.rods == load_case("two-cantilevers-e50-g05").scene.rods
+
+
+def test_an_unreadable_file_is_named(tmp_path, monkeypatch):
+    path = tmp_path / "mine.toml"
+    path.write_text(GOOD, encoding="utf-8")
+
+    def refuse(*_args, **_kwargs):
+        raise PermissionError(13, "Permission denied")
+
+    # Tests may run as root, for whom every file is readable.
+    monkeypatch.setattr("pathlib.Path.read_text", refuse)
+
+    with pytest.raises(CaseError, match=r"cannot be read \(Permission denied\); give a readable one"):
+        load_case(path)
+
+
+def test_a_folder_is_not_a_case(tmp_path):
+    with pytest.raises(CaseError, match="found a folder; give the path of a case file"):
+        load_case(tmp_path)
+
+
+@pytest.mark.parametrize(
+    "name", ["two-cantilever-e50-g0", "two-cantilevers-e50-g0.tml", "cases/two-cantilevers-e50-g0"]
+)
+def test_an_unknown_name_brings_the_nearest_one_and_the_hint_that_paths_work(name):
+    sentence = f'"{name}": found neither a case of the library nor a file; '
+    hint = "did you mean 'two-cantilevers-e50-g0', and a path will do too"
+
+    with pytest.raises(CaseError, match=re.escape(sentence + hint)):
+        load_case(name)
+
+
+@pytest.mark.parametrize("name", ["", "zzz", "a\0b", "x" * 5000, "../nowhere/zzz.toml"])
+def test_a_name_like_no_other_is_refused_in_one_line(name):
+    with pytest.raises(CaseError, match="`rodcheck list`") as caught:
+        load_case(name)
+
+    assert "\n" not in str(caught.value)
+    assert len(str(caught.value)) < 250
+
+
+def test_a_library_case_is_found_from_any_folder(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+
+    assert load_case(library_names()[0]).name == library_names()[0]
+
+
+lines = GOOD.splitlines()
+
+
+@given(data=st.data())
+def test_no_edit_of_a_line_gives_anything_but_a_case_or_a_sentence(data, tmp_path_factory):
+    index = data.draw(st.integers(0, len(lines) - 1))
+    key = lines[index].partition("=")[0]
+    value = data.draw(
+        st.sampled_from(["", "0", "-1", "1e300", "nan", "true", '""', "[]", "{}", "[[1]]", "1979-05-27", '"9 mm"'])
+    )
+    new = data.draw(st.sampled_from(["", f"{key}= {value}", f"x = {value}", f"[{value}]"]))
+    path = tmp_path_factory.mktemp("edited") / "mine.toml"
+    path.write_text("\n".join([*lines[:index], new, *lines[index + 1 :]]), encoding="utf-8")
+
+    try:
+        load_case(path)
+    except CaseError as error:
+        assert "\n" not in str(error)
