@@ -16,7 +16,7 @@ from cases.scene import Rectangle, Rod, Scene, SectionForce
 from rodmodel.axial import shape_functions
 from rodmodel.centre_line import frame
 from rodmodel.chain import Chain
-from rodmodel.section import Fields, SectionStiffness, section_functions, section_stiffness
+from rodmodel.section import Fields, SectionStiffness, section_stiffness
 from rodmodel.stiffness import Element, condensed_element
 from rodmodel.triangular import lower_solve, transposed_solve
 
@@ -41,9 +41,7 @@ class ElementStore:
         """S_ab of the rod for unit Young's modulus."""
         key = (rod.section, rod.material.poisson_ratio, fields)
         if key not in self._sections:
-            self._sections[key] = section_stiffness(
-                rod.section, replace(rod.material, young_modulus=1.0), fields
-            )
+            self._sections[key] = section_stiffness(rod.section, replace(rod.material, young_modulus=1.0), fields)
         return self._sections[key]
 
     def element(self, rod: Rod, fields: Fields, length: float) -> Element:
@@ -84,9 +82,7 @@ class AssembledRod:
         return index, (2.0 * station - left - right) / (right - left)
 
 
-def assembled_rod(
-    scene: Scene, rod: Rod, fields: Fields, borders: Array, store: ElementStore
-) -> AssembledRod:
+def assembled_rod(scene: Scene, rod: Rod, fields: Fields, borders: Array, store: ElementStore) -> AssembledRod:
     """Make (or fetch from `store`) the elements between `borders` and factorise the chain."""
     clamped = {support.end for support in scene.supports if support.rod == rod.name}
     elements = tuple(store.element(rod, fields, float(length)) for length in np.diff(borders))
@@ -136,9 +132,7 @@ def functionals_at(assembled: AssembledRod, station: Array, direction: Array) ->
         half = lower_solve(element.bubble_factor, right)
         condensed[:, :, inner] -= (element.half_coupling.T @ half).reshape(2, n_fields, -1)
         nodal[element_index : element_index + 2, :, members] += condensed
-        bubbles.append(
-            (int(element_index), members[inner], half / np.sqrt(assembled.rod.material.young_modulus))
-        )
+        bubbles.append((int(element_index), members[inner], half / np.sqrt(assembled.rod.material.young_modulus)))
     return Functionals(assembled.chain.half_solve(nodal), nodal[[0, -1]], tuple(bubbles))
 
 
@@ -162,9 +156,7 @@ def section_loads(assembled: AssembledRod, loads: Sequence[SectionForce]) -> Fun
 def combined(functionals: Functionals, weights: Array) -> Functionals:
     """Linear combinations of functionals; weights of shape (m, m_new)."""
     n_new = weights.shape[1]
-    bubbles = tuple(
-        (index, np.arange(n_new), half @ weights[members]) for index, members, half in functionals.bubbles
-    )
+    bubbles = tuple((index, np.arange(n_new), half @ weights[members]) for index, members, half in functionals.bubbles)
     return Functionals(functionals.nodal @ weights, functionals.ends @ weights, bubbles)
 
 
@@ -175,7 +167,8 @@ def added(first: Functionals, second: Functionals) -> Functionals:
 
 def compliance(first: Functionals, second: Functionals) -> Array:
     """first^T K^-1 second, shape (m_first, m_second): displacements of the first under the second as loads."""
-    result = first.nodal.reshape(-1, first.nodal.shape[2]).T @ second.nodal.reshape(-1, second.nodal.shape[2])
+    n_nodal = first.nodal.shape[0] * first.nodal.shape[1]
+    result = first.nodal.reshape(n_nodal, -1).T @ second.nodal.reshape(n_nodal, -1)
     for index, members, half in first.bubbles:
         for other_index, other_members, other_half in second.bubbles:
             if index == other_index:

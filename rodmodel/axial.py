@@ -70,7 +70,7 @@ def axial_matrices(order: int) -> tuple[Array, Array, Array]:
 
 @lru_cache(maxsize=32)
 def lobatto(count: int) -> tuple[Array, Array]:
-    """Points and weights of the Gauss-Lobatto rule on [-1, 1] (both ends are points), exact to degree 2 count - 3.
+    """Points and weights of the Gauss-Lobatto rule on [-1, 1], ends included; exact to degree 2 count - 3, count >= 3.
 
     Weights 2 / (n (n - 1) P_{n-1}^2); Abramowitz and Stegun 25.4.32.
     """

@@ -56,7 +56,7 @@ def natural_borders(scene: Scene, rod: Rod) -> Array:
     """Borders of the scene's elements, and where they miss them loads and zone ends: fields have kinks there."""
     borders = np.concatenate([rod.element_borders, _held_stations(scene, rod)])
     borders = np.sort(np.clip(borders, 0.0, rod.element_borders[-1]))
-    return borders[np.concatenate([[True], np.diff(borders) > SAME_BORDER])]
+    return np.asarray(borders[np.concatenate([[True], np.diff(borders) > SAME_BORDER])])
 
 
 def _held_stations(scene: Scene, rod: Rod) -> Array:
@@ -97,9 +97,7 @@ def border_plan(
         )
         is_held = [int(np.abs(base - station).argmin()) for station in held]
         anchors = {**dict.fromkeys(is_held, -1), **dict(zip(chosen, numbers, strict=True))}
-        plan[rod.name] = RodBorders(
-            base, tuple(sorted(anchors)), tuple(anchors[index] for index in sorted(anchors))
-        )
+        plan[rod.name] = RodBorders(base, tuple(sorted(anchors)), tuple(anchors[index] for index in sorted(anchors)))
     return plan
 
 
@@ -115,8 +113,7 @@ def _edge_stations(scene: Scene, rod: Rod, edges: Sequence[Edge], positions: Arr
 def _movable(scene: Scene, rod: Rod, base: Array, held: Array, edges: Sequence[Edge]) -> list[int]:
     """Borders inside the zones of the edges' pairs, other than held ones."""
     zones = [
-        _on_rod(scene, scene.contact(name), rod, np.array(scene.contact(name).zone))
-        for name in {e.pair for e in edges}
+        _on_rod(scene, scene.contact(name), rod, np.array(scene.contact(name).zone)) for name in {e.pair for e in edges}
     ]
     return [
         index

@@ -31,4 +31,4 @@ def global_points(rod: Rod, points: Array) -> Array:
 
 def local_points(rod: Rod, points: Array) -> Array:
     """Coordinates (x, y, s) in a rod's frame of global points, mm; shape (3, n) to (3, n)."""
-    return frame(rod.centre_line) @ (points - np.asarray(rod.centre_line.start)[:, None])
+    return np.asarray(frame(rod.centre_line) @ (points - np.asarray(rod.centre_line.start)[:, None]))

@@ -44,6 +44,8 @@ def unilateral_contact(compliance: Array, gap: Array, spring: Array) -> Array:
     RuntimeError
         if the iterations run out (three times the number of points).
     """
+    if len(gap) == 0:
+        return np.empty(0)
     factor = cholesky(compliance + np.diag(1.0 / spring), lower=True, check_finite=False)
     force, _ = nnls(factor.T, -solve_triangular(factor, gap, lower=True, check_finite=False))
     # Least squares on the factor loses digits to the factor's own condition; its set of points in contact does not.

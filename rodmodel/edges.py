@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -46,9 +47,7 @@ def stretches_in_contact(system: ContactSystem, force: Array) -> tuple[Stretch, 
     stretches = []
     for pair, grid in system.grids.items():
         station, length = grid.station.ravel(), np.repeat(np.diff(grid.borders), grid.station.shape[1])
-        closed = np.flatnonzero(
-            force[system.points[pair]].reshape(grid.weight.shape)[:, :, grid.middle] > 0.0
-        )
+        closed = np.flatnonzero(force[system.points[pair]].reshape(grid.weight.shape)[:, :, grid.middle] > 0.0)
         opening = np.diff(station[closed]) >= length[closed[1:]]
         for run in np.split(closed, np.flatnonzero(opening) + 1) if len(closed) else []:
             before, after = max(run[0] - 1, 0), min(run[-1] + 1, len(station) - 1)
@@ -79,8 +78,8 @@ def moved(stretches: Sequence[Stretch], edges: Sequence[Edge], positions: Array)
     """The stretches with their moving ends at `positions`."""
     result = list(stretches)
     for edge, position in zip(edges, positions, strict=True):
-        end = {"start": float(position)} if edge.outward < 0 else {"end": float(position)}
-        result[edge.stretch] = replace(result[edge.stretch], **end)
+        stretch, end = result[edge.stretch], float(position)
+        result[edge.stretch] = replace(stretch, start=end) if edge.outward < 0 else replace(stretch, end=end)
     return tuple(result)
 
 
@@ -188,5 +187,4 @@ def _out_of_place(scene: Scene, stretches: Sequence[Stretch]) -> bool:
         near = low < stretch.start < low + margin or high - margin < stretch.end < high
         if not inside or near or stretch.end - stretch.start < margin:
             return True
-    neighbours = zip(stretches, stretches[1:], strict=False)
-    return any(a.pair == b.pair and a.end >= b.start for a, b in neighbours)
+    return any(a.pair == b.pair and a.end >= b.start for a, b in pairwise(stretches))

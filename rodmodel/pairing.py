@@ -77,7 +77,7 @@ def opposite_stations(origin: Rod, target: Rod, station: Array) -> Array:
     """Stations along `target` of the points opposite `station` along `origin`, mm, shape (n,)."""
     points = np.zeros((3, len(station)))
     points[2] = station
-    return local_points(target, global_points(origin, points))[2]
+    return np.asarray(local_points(target, global_points(origin, points))[2])
 
 
 def width_across(scene: Scene, pair: ContactPair) -> tuple[float, float]:

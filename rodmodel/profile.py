@@ -26,7 +26,7 @@ class ContactProfile:
     ----------
     station : along the first rod, mm, ascending, shape (n,)
     position : middle of the first face, global, mm, shape (3, n)
-    middle, mean, outer : pressure in the middle of the width, averaged over it, and at its outer border, MPa, shape (n,)
+    middle, mean, outer : pressure in the middle of the width, averaged over it, and at its outer border, MPa, (n,)
     """
 
     station: Array

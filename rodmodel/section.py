@@ -32,7 +32,7 @@ class Fields:
     Parameters
     ----------
     level : k, largest total degree in (x, y)
-    mirror_x : the solution is its own mirror image in the plane x = 0: u odd in x, v and w even; the others are left out
+    mirror_x : the solution is its own mirror image in the plane x = 0: only u odd in x, v and w even are carried
     mirror_y : likewise in y = 0: v odd in y, u and w even
     """
 
@@ -64,7 +64,8 @@ class Fields:
 
     def index(self, component: int, degree_x: int, degree_y: int) -> int | None:
         """Where a field is; None if symmetry leaves it out."""
-        found = np.flatnonzero((self.table.T == (component, degree_x, degree_y)).all(axis=1))
+        wanted = np.array([[component], [degree_x], [degree_y]])
+        found = np.flatnonzero(np.equal(self.table, wanted).all(axis=0))
         return int(found[0]) if len(found) else None
 
 

@@ -115,7 +115,7 @@ class Solution:
         assembled = self.system.rods[rod]
         psi, slope = self._axial(assembled, points[2])
         b0, b1 = strain_operators(assembled.rod.section, assembled.fields, points[0], points[1])
-        return np.einsum("pcf,fp->cp", b0, psi) + np.einsum("pcf,fp->cp", b1, slope)
+        return np.asarray(np.einsum("pcf,fp->cp", b0, psi) + np.einsum("pcf,fp->cp", b1, slope))
 
     def stress(self, rod: str, points: Array) -> Array:
         """Stress in the local frame at points (x, y, s), MPa, ordered as the strain, shape (6, n)."""
@@ -150,9 +150,7 @@ class Solution:
         at_end = end == "end"
         element, values = assembled.elements[-at_end], self.coefficients[rod][-at_end]
         rows = element.condensed.reshape(2, assembled.fields.count, -1)[int(at_end)]
-        residual = (
-            assembled.rod.material.young_modulus * (rows @ values[:2].ravel()) - load.ends[int(at_end), :, 0]
-        )
+        residual = assembled.rod.material.young_modulus * (rows @ values[:2].ravel()) - load.ends[int(at_end), :, 0]
         axes = frame(assembled.rod.centre_line)
         local = _rigid_motions(assembled) @ residual
         return np.concatenate([axes.T @ local[:3], axes.T @ local[3:]])
@@ -189,7 +187,7 @@ class Solution:
         )
 
     def _axial(self, assembled: AssembledRod, station: Array) -> tuple[Array, Array]:
-        """psi and psi' of every field at stations, each of shape (n_fields, n)."""
+        """Psi and psi' of every field at stations, each of shape (n_fields, n)."""
         index, xi = assembled.locate(station)
         values = self.coefficients[assembled.rod.name][index]
         jacobian = 2.0 / np.diff(assembled.borders)[index]
@@ -198,7 +196,7 @@ class Solution:
 
 
 def _rigid_motions(assembled: AssembledRod) -> Array:
-    """Unit translations along and rotations about e1, e2, t of a section in terms of its fields, shape (6, n_fields)."""
+    """Unit translations along, then rotations about e1, e2, t of a section, as its fields, shape (6, n_fields)."""
     fields, section = assembled.fields, assembled.rod.section
     half_width, half_height = 0.5 * section.width / np.sqrt(3.0), 0.5 * section.height / np.sqrt(3.0)
     motions = np.zeros((6, fields.count))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 
 from cases.scene import Scene, SceneError
 from rodmodel.assembly import ElementStore, coefficients
-from rodmodel.borders import border_plan, natural_borders, placed_borders
+from rodmodel.borders import Edge, border_plan, natural_borders, placed_borders
 from rodmodel.contact import unilateral_contact
-from rodmodel.edges import Stretch, find_edges, moved, moving_edges, same_topology, stretches_in_contact
+from rodmodel.edges import EdgeSearch, Stretch, find_edges, moved, moving_edges, same_topology, stretches_in_contact
 from rodmodel.solution import Cost, Solution
 from rodmodel.symmetry import symmetric_fields
 from rodmodel.system import ContactSystem, contact_system
@@ -106,14 +106,7 @@ def moved_contact(
         edges, positions = moving_edges(scene, stretches)
         if not edges:
             return MovedContact("converged", solutions, stretches, system, force)
-        plan = border_plan(scene, natural, edges, positions)
-        search = find_edges(
-            scene,
-            stretches,
-            edges,
-            positions,
-            lambda at, p=plan, e=edges: system_on(placed_borders(scene, p, e, at)),
-        )
+        search = _search(scene, natural, stretches, edges, positions, system_on)
         system = search.system
         force = unilateral_contact(system.compliance, system.initial_gap, system.spring)
         solutions += len(search.steps) + 1
@@ -124,3 +117,16 @@ def moved_contact(
         stretches = found
     reason = f"stagnated: the edges of contact did not settle in {solutions} solutions"
     return MovedContact(reason, solutions, stretches, system, force)
+
+
+def _search(
+    scene: Scene,
+    natural: dict[str, Array],
+    stretches: Sequence[Stretch],
+    edges: Sequence[Edge],
+    positions: Array,
+    system_on: Callable[[dict[str, Array]], ContactSystem],
+) -> EdgeSearch:
+    """One search with the borders that follow each edge chosen beforehand."""
+    plan = border_plan(scene, natural, edges, positions)
+    return find_edges(scene, stretches, edges, positions, lambda at: system_on(placed_borders(scene, plan, edges, at)))

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from cases.scene import ContactPair, Scene
+from cases.scene import ContactPair, Face, Scene
 from rodmodel.assembly import (
     AssembledRod,
     ElementStore,
@@ -74,9 +74,7 @@ def contact_system(
     scene: Scene, fields: Mapping[str, Fields], borders: Mapping[str, Array], store: ElementStore
 ) -> ContactSystem:
     """Assemble the rods on `borders` (mm, by rod name) and reduce them to their contact points."""
-    rods = {
-        rod.name: assembled_rod(scene, rod, fields[rod.name], borders[rod.name], store) for rod in scene.rods
-    }
+    rods = {rod.name: assembled_rod(scene, rod, fields[rod.name], borders[rod.name], store) for rod in scene.rods}
     grids = {pair.name: _grid(scene, pair, rods) for pair in scene.contacts}
     counts = [grid.weight.size for grid in grids.values()]
     ends = np.cumsum([0, *counts])
@@ -100,9 +98,7 @@ def _grid(scene: Scene, pair: ContactPair, rods: Mapping[str, AssembledRod]) -> 
     """Contact points between the borders of both rods: enough of them to integrate the penalty energy exactly."""
     first, second = rods[pair.first.rod], rods[pair.second.rod]
     start, end = pair.zone
-    borders = np.sort(
-        np.concatenate([first.borders, opposite_stations(second.rod, first.rod, second.borders)])
-    )
+    borders = np.sort(np.concatenate([first.borders, opposite_stations(second.rod, first.rod, second.borders)]))
     inside = borders[(borders > start + SAME_BORDER) & (borders < end - SAME_BORDER)]
     borders = np.concatenate([[start], inside, [end]])
     borders = borders[np.concatenate([[True], np.diff(borders) > SAME_BORDER])]
@@ -132,7 +128,7 @@ def _gap_functionals(
     return functionals, np.concatenate(places)
 
 
-def inward_direction(assembled: AssembledRod, face: str, x: Array, y: Array) -> Array:
+def inward_direction(assembled: AssembledRod, face: Face, x: Array, y: Array) -> Array:
     """Value of every field in the direction -n of a face at section points, shape (n_fields, n_points)."""
     axes = face_axes(assembled.rod, face)
     values, _, _ = section_functions(assembled.rod.section, assembled.fields, x, y)

@@ -1,0 +1,58 @@
+"""Element borders that follow the edges of contact."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from cases.loader import load_case
+from cases.scene import Scene, SectionForce
+from rodmodel.borders import Edge, border_plan, natural_borders, placed_borders
+
+
+@pytest.fixture
+def scene() -> Scene:
+    return load_case("two-cantilevers-e20-g0").scene
+
+
+def placed(scene: Scene, edges: list[Edge], positions: list[float]) -> dict[str, np.ndarray]:
+    borders = {rod.name: natural_borders(scene, rod) for rod in scene.rods}
+    at = np.array(positions)
+    return placed_borders(scene, border_plan(scene, borders, edges, at), edges, at)
+
+
+BOTH = [Edge("overlap", 0, -1), Edge("overlap", 0, 1)]
+
+
+def test_two_edges_take_the_two_inner_borders_of_both_rods(scene: Scene) -> None:
+    borders = placed(scene, BOTH, [237.5, 262.0])
+    np.testing.assert_allclose(borders["lower"], [0, 66.67, 133.33, 200, 237.5, 262, 300])
+    np.testing.assert_allclose(borders["upper"], [0, 37.5, 62, 100, 166.67, 233.33, 300])
+
+
+def test_borders_between_held_ones_keep_their_proportions(scene: Scene) -> None:
+    borders = placed(scene, BOTH[1:], [220.0])
+    # 233.33 goes to 220; 266.67 stays half way between it and the zone's end at 300
+    np.testing.assert_allclose(borders["lower"][3:], [200, 220, 260.006, 300], atol=1e-3)
+
+
+def test_elements_never_overlap_however_far_an_edge_goes(scene: Scene) -> None:
+    for position in (200.5, 230.0, 270.0, 299.5):
+        for borders in placed(scene, BOTH[1:], [position]).values():
+            assert (np.diff(borders) > 0.0).all()
+
+
+def test_a_rod_with_too_few_borders_gets_new_ones(scene: Scene) -> None:
+    lower = replace(scene.rods[0], element_borders=(0.0, 200.0, 300.0))
+    coarse = replace(scene, rods=(lower, scene.rods[1]))
+    borders = placed(coarse, BOTH, [237.5, 262.0])
+    np.testing.assert_allclose(borders["lower"], [0, 200, 237.5, 262, 300])
+
+
+def test_loads_and_zone_ends_are_borders_and_do_not_move(scene: Scene) -> None:
+    load = SectionForce("lower", 240.0, (0.0, -1.0, 0.0))
+    loaded = replace(scene, loads=(*scene.loads, load))
+    assert 240.0 in natural_borders(loaded, loaded.rods[0])
+    borders = placed(loaded, BOTH, [239.0, 262.0])["lower"]
+    assert 240.0 in borders
+    assert 239.0 in borders

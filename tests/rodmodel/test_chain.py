@@ -1,0 +1,91 @@
+"""The rod as a chain: block factorisation, functionals and compliances, against a dense solution of everything."""
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+import rodmodel as rm
+from rodmodel.assembly import ElementStore, assembled_rod, coefficients, compliance, functionals_at
+from rodmodel.axial import shape_functions
+from rodmodel.section import Fields
+from rodmodel.stiffness import element_stiffness
+
+BORDERS = np.array([0.0, 40.0, 100.0, 130.0])
+
+
+@pytest.fixture
+def scene(cantilever: Callable[..., rm.Scene]) -> rm.Scene:
+    return cantilever((0.0, 0.0, 0.0), length=130.0)
+
+
+def dense_inverse(scene: rm.Scene, fields: Fields, order: int, borders: np.ndarray) -> np.ndarray:
+    """Inverse stiffness on all nodes and bubbles of the clamped rod: node dofs first, then bubbles by element."""
+    n, n_elements = fields.count, len(borders) - 1
+    store = ElementStore(order)
+    size = n * (n_elements + 1 + n_elements * (order - 1))
+    stiffness = np.zeros((size, size))
+    for index, length in enumerate(np.diff(borders)):
+        rows = np.concatenate(
+            [
+                np.arange(index * n, (index + 2) * n),
+                n * (n_elements + 1) + np.arange(index * n * (order - 1), (index + 1) * n * (order - 1)),
+            ]
+        )
+        unit = element_stiffness(float(length), order, store.section(scene.rods[0], fields))
+        stiffness[np.ix_(rows, rows)] += scene.rods[0].material.young_modulus * unit
+    inverse = np.zeros_like(stiffness)
+    inverse[n:, n:] = np.linalg.inv(stiffness[n:, n:])
+    return inverse
+
+
+def test_compliance_is_that_of_the_dense_stiffness(scene: rm.Scene) -> None:
+    order, fields = 4, Fields(2)
+    rng = np.random.default_rng(2)
+    station = np.array([130.0, 40.0, 71.0, 95.0, 12.0])
+    direction = rng.standard_normal((fields.count, len(station)))
+    assembled = assembled_rod(scene, scene.rods[0], fields, BORDERS, ElementStore(order))
+
+    functionals = functionals_at(assembled, station, direction)
+    found = compliance(functionals, functionals)
+
+    inverse = dense_inverse(scene, fields, order, BORDERS)
+    rows = np.zeros((len(inverse), len(station)))
+    index, xi = assembled.locate(station)
+    along = shape_functions(order, xi)
+    n = fields.count
+    for point, element in enumerate(index):
+        rows[element * n : (element + 2) * n, point] += np.kron(along[:2, point], direction[:, point])
+        first = n * len(BORDERS) + element * n * (order - 1)
+        rows[first : first + n * (order - 1), point] += np.kron(along[2:, point], direction[:, point])
+    expected = rows.T @ inverse @ rows
+    np.testing.assert_allclose(found, expected, rtol=0.0, atol=1e-10 * np.abs(expected).max())
+
+
+def test_coefficients_answer_the_load_they_were_solved_for(scene: rm.Scene) -> None:
+    order, fields = 4, Fields(2)
+    station = np.array([95.0])
+    direction = np.random.default_rng(3).standard_normal((fields.count, 1))
+    assembled = assembled_rod(scene, scene.rods[0], fields, BORDERS, ElementStore(order))
+    load = functionals_at(assembled, station, direction)
+
+    values = coefficients(assembled, load)
+
+    index, xi = assembled.locate(station)
+    moved = shape_functions(order, xi)[:, 0] @ values[index[0]] @ direction[:, 0]
+    assert moved == pytest.approx(compliance(load, load)[0, 0], rel=1e-10)
+    assert np.abs(values[0, 0]).max() == 0.0  # the clamp
+    np.testing.assert_array_equal(values[:-1, 1], values[1:, 0])  # continuity
+
+
+def test_a_rod_without_a_clamp_has_no_factor(scene: rm.Scene) -> None:
+    loose = rm.Scene("loose", scene.rods, (), (), ())
+    with pytest.raises(np.linalg.LinAlgError):
+        assembled_rod(loose, loose.rods[0], Fields(2), BORDERS, ElementStore(3))
+
+
+def test_equal_elements_are_made_once(scene: rm.Scene) -> None:
+    borders = np.array([0.0, 40.0, 80.0, 120.0, 130.0])
+    assembled = assembled_rod(scene, scene.rods[0], Fields(2), borders, ElementStore(3))
+    assert assembled.elements[0] is assembled.elements[1] is assembled.elements[2]
+    assert assembled.elements[3] is not assembled.elements[0]

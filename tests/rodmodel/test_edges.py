@@ -1,0 +1,120 @@
+"""Search for the edges of contact."""
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+from cases.loader import load_case
+from cases.scene import Scene
+from rodmodel.assembly import ElementStore
+from rodmodel.borders import border_plan, natural_borders, placed_borders
+from rodmodel.contact import forces_on, unilateral_contact
+from rodmodel.edges import (
+    EdgeSearch,
+    Stretch,
+    edge_pressures,
+    find_edges,
+    moved,
+    moving_edges,
+    same_topology,
+    stretches_in_contact,
+)
+from rodmodel.symmetry import symmetric_fields
+from rodmodel.system import ContactSystem, contact_system
+
+LEVEL, ORDER = 3, 5
+
+
+@pytest.fixture(scope="module")
+def search() -> Callable[[str, float, float], tuple[Scene, EdgeSearch]]:
+    """Search from a guessed stretch."""
+
+    def run(name: str, start: float, end: float) -> tuple[Scene, EdgeSearch]:
+        scene = load_case(f"two-cantilevers-{name}").scene
+        fields, store = symmetric_fields(scene, LEVEL), ElementStore(ORDER)
+        borders = {rod.name: natural_borders(scene, rod) for rod in scene.rods}
+        stretches = (Stretch("overlap", start, end),)
+        edges, positions = moving_edges(scene, stretches)
+        plan = border_plan(scene, borders, edges, positions)
+
+        def system_at(at: np.ndarray) -> ContactSystem:
+            return contact_system(scene, fields, placed_borders(scene, plan, edges, at), store)
+
+        return scene, find_edges(scene, stretches, edges, positions, system_at)
+
+    return run
+
+
+@pytest.mark.parametrize("guess", [212.0, 220.0, 226.0, 235.0])
+def test_one_edge_is_found_from_any_guess(search, guess: float) -> None:
+    _, found = search("e50-g0", 200.0, guess)
+    assert found.outcome == "converged"
+    assert found.positions[0] == pytest.approx(search("e50-g0", 200.0, 221.0)[1].positions[0], abs=0.02)
+    assert len(found.steps) <= 8
+
+
+@pytest.mark.parametrize("guess", [(234.0, 266.0), (240.0, 258.0), (238.0, 262.0)])
+def test_two_edges_are_found_together(search, guess: tuple[float, float]) -> None:
+    _, found = search("e20-g0", *guess)
+    assert found.outcome == "converged"
+    assert found.positions == pytest.approx(search("e20-g0", 237.0, 261.0)[1].positions, abs=0.03)
+    assert len(found.steps) <= 9
+
+
+def test_pressure_vanishes_on_the_edge_and_pulls_beyond_it(search) -> None:
+    scene, found = search("e50-g0", 200.0, 225.0)
+    stretches = (Stretch("overlap", 200.0, float(found.positions[0])),)
+    edges, _ = moving_edges(scene, stretches)
+    assert abs(edge_pressures(found.system, stretches, edges)[0]) < 0.02  # 1.5 MPa a millimetre times 0.01 mm
+    _, longer = search("e50-g0", 200.0, 235.0)
+    first_guess = (Stretch("overlap", 200.0, 235.0),)
+    assert longer.steps[0, 0] == 235.0
+    assert edges == moving_edges(scene, first_guess)[0]
+
+
+def test_contact_force_hardly_depends_on_the_border(search) -> None:
+    """Held elements: where the mean pressure vanishes the force is stationary; the middle's edge is close to that."""
+    scene, found = search("e50-g0", 200.0, 225.0)
+    edge = float(found.positions[0])
+    fields, store = symmetric_fields(scene, LEVEL), ElementStore(ORDER)
+    borders = {rod.name: natural_borders(scene, rod) for rod in scene.rods}
+    edges, positions = moving_edges(scene, (Stretch("overlap", 200.0, edge),))
+    plan = border_plan(scene, borders, edges, positions)
+    forces = []
+    for shift in (-1.0, 0.0, 1.0):
+        system = contact_system(scene, fields, placed_borders(scene, plan, edges, positions + shift), store)
+        grid = system.grids["overlap"]
+        held = np.zeros(grid.weight.shape, dtype=bool)
+        held[grid.station[:, 0] < edge + shift - 1e-6] = True
+        forces.append(forces_on(held.ravel(), system.compliance, system.initial_gap, system.spring).sum())
+    assert abs(forces[2] - forces[0]) < 1e-4 * forces[1]  # over 2 mm
+
+
+def test_ends_of_the_zone_are_not_edges(search) -> None:
+    scene, _ = search("e50-g0", 200.0, 225.0)
+    edges, positions = moving_edges(scene, (Stretch("overlap", 200.0, 300.0),))
+    assert edges == ()
+    assert len(positions) == 0
+
+
+def test_stretches_take_their_moved_ends() -> None:
+    scene = load_case("two-cantilevers-e20-g0").scene
+    stretches = (Stretch("overlap", 220.0, 230.0), Stretch("overlap", 250.0, 300.0))
+    edges, positions = moving_edges(scene, stretches)
+    np.testing.assert_array_equal(positions, [220.0, 230.0, 250.0])
+    after = moved(stretches, edges, positions + 1.0)
+    assert after == (Stretch("overlap", 221.0, 231.0), Stretch("overlap", 251.0, 300.0))
+    assert same_topology(stretches, after)
+    assert not same_topology(stretches, after[:1])
+
+
+def test_ripples_inside_an_element_are_not_stretches() -> None:
+    scene = load_case("two-cantilevers-e50-g0").scene
+    borders = {rod.name: natural_borders(scene, rod) for rod in scene.rods}
+    system = contact_system(scene, symmetric_fields(scene, 3), borders, ElementStore(4))
+    force = unilateral_contact(system.compliance, system.initial_gap, system.spring)
+    closed = (force.reshape(system.grids["overlap"].weight.shape)[:, :, 0] > 0.0).ravel()
+    closed_runs = np.count_nonzero(np.diff(np.concatenate([[0], closed.astype(int)])) == 1)
+    assert closed_runs > 1  # the mesh does show openings
+    assert len(stretches_in_contact(system, force)) == 1
