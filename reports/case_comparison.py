@@ -125,9 +125,7 @@ def _reference_estimate(check: Check, references: Sequence[Quantities], extrapol
     return sequence_estimate(values, extrapolate, curve=check.quantity in CURVES)
 
 
-def _against_truth(
-    case: Case, model: Model, quantities: Quantities, truth: IndependentValues
-) -> list[Comparison]:
+def _against_truth(case: Case, model: Model, quantities: Quantities, truth: IndependentValues) -> list[Comparison]:
     """The case's own checks, with their tolerances, for those quantities that the independent values hold."""
     found = []
     for check in case.compare:

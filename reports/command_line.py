@@ -111,9 +111,7 @@ def solve(
     if json:
         quantities = answer.quantities
         print(
-            result(
-                loaded.name, model, answer.level, answer.order, quantities, answer.total_seconds
-            ).model_dump_json()
+            result(loaded.name, model, answer.level, answer.order, quantities, answer.total_seconds).model_dump_json()
         )
     else:
         from reports.tables import print_run
@@ -163,9 +161,7 @@ def report(*cases: str, output: Path = Path("report")) -> int:
     try:
         page = write_report(runs, output)
     except OSError as error:
-        raise InputError(
-            f"--output: cannot write to {output} ({error.strerror}); give another folder"
-        ) from error
+        raise InputError(f"--output: cannot write to {output} ({error.strerror}); give another folder") from error
     print(page)
     return _exit_code(runs)
 

@@ -233,8 +233,7 @@ def sequence_estimate(values: Sequence[Array], extrapolate: Extrapolate, *, curv
         return Estimate(fine, 0.0)
     if not curve:
         parts = [
-            extrapolate(*(float(number) for number in numbers))
-            for numbers in zip(coarse, medium, fine, strict=True)
+            extrapolate(*(float(number) for number in numbers)) for numbers in zip(coarse, medium, fine, strict=True)
         ]
         orders = [part.order for part in parts if part.order is not None]
         return Estimate(

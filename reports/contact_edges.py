@@ -16,9 +16,7 @@ PRESSURE_FLOOR = 1e-6
 FLICKER = 1e-2
 
 
-def contact_stretches(
-    station: Array, pressure: Array, limits: tuple[float, float]
-) -> tuple[tuple[float, float], ...]:
+def contact_stretches(station: Array, pressure: Array, limits: tuple[float, float]) -> tuple[tuple[float, float], ...]:
     """Stretches of positive pressure and where they end.
 
     Parameters
@@ -59,9 +57,7 @@ def contact_stretches(
     return tuple(stretches)
 
 
-def edge_resolution(
-    station: Array, stretches: tuple[tuple[float, float], ...], limits: tuple[float, float]
-) -> float:
+def edge_resolution(station: Array, stretches: tuple[tuple[float, float], ...], limits: tuple[float, float]) -> float:
     """Width of the widest station interval that holds an edge, mm; an edge at a limit is exact.
 
     Parameters
@@ -74,9 +70,7 @@ def edge_resolution(
     return float((station[after] - station[before]).max(initial=0.0))
 
 
-def _edge(
-    station: Array, pressure: Array, index: int, step: int, alone: bool, limit: float, tolerance: float
-) -> float:
+def _edge(station: Array, pressure: Array, index: int, step: int, alone: bool, limit: float, tolerance: float) -> float:
     """Edge of a stretch whose last station in contact is `index`, outwards in direction `step`."""
     beyond = index + step
     here = float(station[index])

@@ -10,6 +10,9 @@ if TYPE_CHECKING:
     from cases.scene import ContactPair, Rod, Scene
     from reports.solution import Array
 
+# Names of the global axes.
+AXES = ("X", "Y", "Z")
+
 
 def frame(rod: Rod) -> Array:
     """Rows e1, e2, t of the rod's local frame in global components, shape (3, 3) (`cases.scene`)."""

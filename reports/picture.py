@@ -112,7 +112,7 @@ def draw(scene: Scene, quantities: Quantities) -> Picture:
         where there is no way to draw off screen. VTK may also end the process then.
     """
     # VTK says on standard error that there is no X server and then draws without one.
-    pyvista.vtk_verbosity("off")  # type: ignore[arg-type]
+    pyvista.vtk_verbosity("off")
     factor = magnification(scene, quantities)
     shifts = drawn_shifts(scene, factor)
     limit = max(float(np.linalg.norm(rod.displacement, axis=0).max()) for rod in quantities.rods)
@@ -237,9 +237,7 @@ def _add_scale(plotter: pyvista.Plotter, scene: Scene) -> None:
     rod = scene.rods[0]
     _, second, tangent = frame(rod)
     length = round_below(0.25 * extent(scene))
-    below = (
-        np.asarray(rod.centre_line.start) - second * (0.13 * extent(scene)) + 0.02 * tangent * extent(scene)
-    )
+    below = np.asarray(rod.centre_line.start) - second * (0.13 * extent(scene)) + 0.02 * tangent * extent(scene)
     ends = np.array([below, below + length * tangent])
     tick = second * 0.008 * extent(scene)
     for line in (ends, [ends[0] - tick, ends[0] + tick], [ends[1] - tick, ends[1] + tick]):

@@ -21,8 +21,6 @@ if TYPE_CHECKING:
     from cases.scene import ContactPair, End, Rod, Scene, Vector
     from reports.solution import Array, ContactProfile, Solution
 
-AXES = ("X", "Y", "Z")
-
 
 @dataclass(frozen=True)
 class Definition:
@@ -62,9 +60,7 @@ DEFINITIONS: Mapping[str, Definition] = {
     "penetration": Definition("Penetration", "mm", "Largest overlap of the faces at any contact point."),
     "pressure_middle": Definition("Pressure, middle", "MPa", "Contact pressure in the middle of the width."),
     "pressure_mean": Definition("Pressure, mean", "MPa", "Contact pressure averaged over the width."),
-    "pressure_outer": Definition(
-        "Pressure, outer", "MPa", "Contact pressure at the outer border of the width."
-    ),
+    "pressure_outer": Definition("Pressure, outer", "MPa", "Contact pressure at the outer border of the width."),
     "deflection": Definition(
         "Deflection", "mm", "Displacement of the centre line (x = y = 0) at the stations, global axes."
     ),
@@ -253,16 +249,12 @@ def evaluate(
         outcome=solution.outcome,
         contacts=tuple(contact_quantities(solution, pair) for pair in scene.contacts),
         rods=tuple(
-            rod_quantities(solution, rod, merged_stations(rod, extra.get(rod.name, np.empty(0))))
-            for rod in scene.rods
+            rod_quantities(solution, rod, merged_stations(rod, extra.get(rod.name, np.empty(0)))) for rod in scene.rods
         ),
         point_stresses={
-            (rod, point): float(stress_s(solution, rod, np.array([point]).T)[0])
-            for rod, point in stress_points
+            (rod, point): float(stress_s(solution, rod, np.array([point]).T)[0]) for rod, point in stress_points
         },
-        reactions={
-            (clamp.rod, clamp.end): solution.reaction(clamp.rod, clamp.end) for clamp in scene.supports
-        },
+        reactions={(clamp.rod, clamp.end): solution.reaction(clamp.rod, clamp.end) for clamp in scene.supports},
         strain_energy=float(solution.strain_energy),
         equilibrium_residual=equilibrium_residual(solution),
         unknowns=solution.cost.unknowns,
@@ -332,9 +324,7 @@ def rod_quantities(solution: Solution, rod: Rod, station: Array) -> RodQuantitie
     """
     equilibrium = equilibrium_resultants(solution, rod, station)
     stress = solution.section_resultants(rod.name, station)
-    clamped = [
-        0 if clamp.end == "start" else -1 for clamp in solution.scene.supports if clamp.rod == rod.name
-    ]
+    clamped = [0 if clamp.end == "start" else -1 for clamp in solution.scene.supports if clamp.rod == rod.name]
     end_moment_equilibrium = end_moment_stress = max_bending_stress = None
     if clamped:
         end = max(clamped, key=lambda index: abs(float(equilibrium[3, index])))

@@ -30,9 +30,7 @@ class _Object(BaseModel):
 class Seconds(_Object):
     """Wall-clock time, s."""
 
-    setup: float = Field(
-        description="Everything before the contact iteration that the solver counts as set-up, s."
-    )
+    setup: float = Field(description="Everything before the contact iteration that the solver counts as set-up, s.")
     solve: float = Field(description="The solution itself, disjoint from set-up, s.")
     total: float = Field(description="From the scene to all quantities of this object, s.")
 
@@ -65,21 +63,15 @@ class RodCurves(_Object):
     """Deflection and bending moment along one rod."""
 
     station: list[float] = Field(description="Arc length from the rod's start, both ends included, mm.")
-    position: list[Triple] = Field(
-        description="Undeformed centre line at the stations, global [X, Y, Z], mm."
-    )
+    position: list[Triple] = Field(description="Undeformed centre line at the stations, global [X, Y, Z], mm.")
     displacement: list[Triple] = Field(description=_described("deflection"))
     moment: list[float] = Field(description=_described("bending_moment"))
     moment_stress: list[float] = Field(description=_described("bending_moment_stress"))
     end_moment_equilibrium: float | None = Field(
         description=_described("end_moment_equilibrium") + " Null without a clamp."
     )
-    end_moment_stress: float | None = Field(
-        description=_described("end_moment_stress") + " Null without a clamp."
-    )
-    max_bending_stress: float | None = Field(
-        description=_described("max_bending_stress") + " Null without a clamp."
-    )
+    end_moment_stress: float | None = Field(description=_described("end_moment_stress") + " Null without a clamp.")
+    max_bending_stress: float | None = Field(description=_described("max_bending_stress") + " Null without a clamp.")
 
 
 class Result(_Object):
@@ -92,9 +84,7 @@ class Result(_Object):
     unknowns: int = Field(description="Unknowns carried in the solution.")
     converged: bool
     outcome: str = Field(description="'converged', or why not.")
-    contact_solutions: int = Field(
-        description="Contact solutions spent (border positions or active sets tried)."
-    )
+    contact_solutions: int = Field(description="Contact solutions spent (border positions or active sets tried).")
     seconds: Seconds
     strain_energy: float = Field(description=_described("strain_energy"))
     equilibrium_residual: float = Field(description=_described("equilibrium_residual"))

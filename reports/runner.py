@@ -136,9 +136,7 @@ def run_case(case: Case, progress: Progress) -> CaseRun:
     rod = run_rod(case, repeats=ROD_REPEATS)
 
     points = evaluation_points(case)
-    solutions = reference3d.solve_sequence(
-        case.scene, lambda done, of: progress(f"3D mesh {done + 1} of {of}")
-    )
+    solutions = reference3d.solve_sequence(case.scene, lambda done, of: progress(f"3D mesh {done + 1} of {of}"))
     progress("comparison")
     references = []
     for solution in solutions:
@@ -152,9 +150,7 @@ def run_case(case: Case, progress: Progress) -> CaseRun:
 
     def extrapolate(first: float, second: float, third: float) -> Extrapolation:
         found = reference3d.grid_convergence((first, second, third), (coarse, medium, fine), order)
-        return Extrapolation(
-            found.extrapolated, found.uncertainty, found.observed_order if found.asymptotic else None
-        )
+        return Extrapolation(found.extrapolated, found.uncertainty, found.observed_order if found.asymptotic else None)
 
     comparisons = case_comparisons(case, rod.quantities, [run.quantities for run in references], extrapolate)
     return CaseRun(case, rod, tuple(references), comparisons)

@@ -53,9 +53,7 @@ def print_run(case: Case, run: Run) -> None:
     console, quantities = _console(), run.quantities
     console.print(f"[bold]{case.title}[/] ({case.name}), {_model(run)}: {quantities.outcome}")
     console.print(f"{_cost(run)}; {quantities.contact_solutions} contact solutions")
-    contacts = Table(
-        "contact", "force, N", "centre, mm", "edges middle, mm", "edges outer, mm", "penetration, mm"
-    )
+    contacts = Table("contact", "force, N", "centre, mm", "edges middle, mm", "edges outer, mm", "penetration, mm")
     for contact in quantities.contacts:
         contacts.add_row(
             contact.pair,

@@ -68,9 +68,7 @@ def independent_values(path: Path, scene: Scene) -> IndependentValues:
         edges = np.ravel(data["edges_outer_mm"]).astype(float)
         estimates["contact_edges_outer", name] = Estimate(edges, doubt["edges_outer_mm"])
         columns = ("position_mm", "middle_MPa", "mean_MPa", "outer_MPa")
-        pressure[name] = PressureProfile(
-            *(np.array(data["pressure"][column], dtype=float) for column in columns)
-        )
+        pressure[name] = PressureProfile(*(np.array(data["pressure"][column], dtype=float) for column in columns))
     return IndependentValues(estimates, stations, pressure)
 
 

@@ -1,0 +1,208 @@
+"""The page's curves as plotly figures: deflection, contact pressure and bending moment, both models in one picture.
+
+Colours are of the palette of M. Okabe and K. Ito (2008), which colour-blind readers can tell apart; models also differ
+in line style, so that a black and white print stays readable.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+import plotly.graph_objects as go
+from plotly.subplots import make_subplots
+
+from reports.geometry import AXES, frame
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from cases.scene import Rod
+    from reports.quantities import PressureProfile, RodQuantities
+    from reports.runner import CaseRun
+    from reports.solution import Array
+    from reports.truth import IndependentValues
+
+ROD, REFERENCE, TRUTH, PUBLISHED = "#0072B2", "#D55E00", "#1F2933", "#007A5A"
+GRID, INK = "#E3E8EE", "#1F2933"
+FONT = "system-ui, -apple-system, 'Segoe UI', Roboto, 'Helvetica Neue', Arial, sans-serif"
+ROD_NAME, REFERENCE_NAME, TRUTH_NAME = "rod model", "3D of this run", "independent 3D"
+
+_LINES = {
+    ROD_NAME: {"color": ROD, "width": 2.2},
+    REFERENCE_NAME: {"color": REFERENCE, "width": 2.2, "dash": "6px,4px"},
+}
+_POINTS = {"symbol": "circle-open", "size": 6, "color": TRUTH, "line": {"width": 1.2}}
+
+
+def deflection_figure(run: CaseRun, truth: IndependentValues | None) -> go.Figure:
+    """Transverse deflection of every rod, and below it how far the others are from the 3D reference."""
+    rods = run.case.scene.rods
+    figure = _panels([rod.name for rod in rods], rows=2)
+    for column, rod in enumerate(rods, start=1):
+        model, reference = run.rod.quantities.rod(rod.name), run.references[-1].quantities.rod(rod.name)
+        component = int(np.argmax(np.abs(reference.displacement).max(axis=1)))
+        x = _along(rod, reference)
+        first = column == 1
+        curves = ((ROD_NAME, model), (REFERENCE_NAME, reference))
+        for name, found in curves:
+            _add_line(figure, name, x, found.displacement[component], 1, column, legend=first)
+        difference = 1000.0 * (model.displacement - reference.displacement)[component]
+        _add_line(figure, ROD_NAME, x, difference, 2, column, legend=False)
+        if truth is not None and rod.name in truth.stations and component == 1:
+            at = np.searchsorted(reference.station, truth.stations[rod.name] - 1e-6 * rod.length)
+            values = truth.estimates["deflection", rod.name].value
+            _add_points(figure, x[at], values, 1, column, legend=first)
+            apart = 1000.0 * (values - reference.displacement[component, at])
+            _add_points(figure, x[at], apart, 2, column, legend=False)
+        figure.update_yaxes(title_text=f"u<sub>{AXES[component]}</sub>, mm", row=1, col=column)
+        figure.update_yaxes(title_text="minus 3D, µm", row=2, col=column)
+        figure.update_xaxes(title_text=f"{_axis_name(rod)}, mm", row=2, col=column)
+    return _styled(figure, 460)
+
+
+def pressure_figure(run: CaseRun, pair: str, truth: IndependentValues | None) -> go.Figure:
+    """Contact pressure in the middle of the width, its mean and at the outer border, where there is contact.
+
+    Dotted upright lines are published edges.
+    """
+    model, reference = run.rod.quantities.contact(pair), run.references[-1].quantities.contact(pair)
+    independent = None if truth is None else truth.pressure.get(pair)
+    titles = ("middle of the width", "mean over the width", "outer border")
+    figure = _panels(titles, rows=1, shared_y=True)
+    for column, part in enumerate(("middle", "mean", "outer"), start=1):
+        first = column == 1
+        for name, found in ((ROD_NAME, model.pressure), (REFERENCE_NAME, reference.pressure)):
+            _add_line(figure, name, found.position, getattr(found, part), 1, column, legend=first)
+        if independent is not None:
+            positions, values = _thinned(independent, part)
+            _add_points(figure, positions, values, 1, column, legend=first)
+        figure.update_xaxes(title_text=f"{AXES[reference.axis]}, mm", row=1, col=column)
+    published = [
+        edge
+        for entry in run.case.published
+        if entry.quantity == "contact_edges" and entry.of == pair
+        for edge in entry.value
+    ]
+    for edge in published:
+        figure.add_vline(edge, line={"color": PUBLISHED, "width": 1.6, "dash": "dot"}, row=1, col=1)
+    if published:
+        figure.add_scatter(
+            x=[None],
+            y=[None],
+            name="published edge",
+            mode="lines",
+            line={"color": PUBLISHED, "width": 1.6, "dash": "dot"},
+        )
+    edges = [edge for found in (model, reference) for stretch in found.edges_outer for edge in stretch]
+    if edges:
+        margin = 0.15 * (max(edges) - min(edges)) + 1.0
+        figure.update_xaxes(range=[min(edges) - margin, max(edges) + margin])
+    figure.update_yaxes(rangemode="tozero")
+    figure.update_yaxes(title_text="p<sub>n</sub>, MPa", row=1, col=1)
+    return _styled(figure, 360)
+
+
+def moment_figure(run: CaseRun) -> go.Figure:
+    """Bending moment of every rod from equilibrium and, below, how far the moment from stress is from it."""
+    rods = run.case.scene.rods
+    figure = _panels([rod.name for rod in rods], rows=2)
+    for column, rod in enumerate(rods, start=1):
+        for name, answer in ((ROD_NAME, run.rod), (REFERENCE_NAME, run.references[-1])):
+            found = answer.quantities.rod(rod.name)
+            x, moment = _along(rod, found), found.moment / 1000.0
+            _add_line(figure, name, x, moment, 1, column, legend=column == 1)
+            _add_line(figure, name, x, found.stress[3] / 1000.0 - moment, 2, column, legend=False)
+        figure.update_yaxes(title_text="M<sub>1</sub>, kN mm", row=1, col=column)
+        figure.update_yaxes(title_text="stress minus<br>equilibrium, kN mm", row=2, col=column)
+        figure.update_xaxes(title_text=f"{_axis_name(rod)}, mm", row=2, col=column)
+    return _styled(figure, 460)
+
+
+def _axis_name(rod: Rod) -> str:
+    """The global axis that a rod follows most nearly."""
+    return AXES[int(np.argmax(np.abs(frame(rod)[2])))]
+
+
+def _along(rod: Rod, found: RodQuantities) -> Array:
+    position: Array = found.position[AXES.index(_axis_name(rod))]
+    return position
+
+
+def _thinned(profile: PressureProfile, part: str, most: int = 70) -> tuple[Array, Array]:
+    """Points of a profile where there is contact, at most so many, and the first open ones beside them."""
+    values: Array = getattr(profile, part)
+    near = np.flatnonzero(np.convolve(values > 0.0, np.ones(3), mode="same") > 0)
+    chosen = near[:: max(1, -(-len(near) // most))]
+    return profile.position[chosen], values[chosen]
+
+
+def _panels(titles: Sequence[str], rows: int, *, shared_y: bool = False) -> go.Figure:
+    figure: go.Figure = make_subplots(
+        rows=rows,
+        cols=len(titles),
+        subplot_titles=list(titles),
+        row_heights=[0.64, 0.36] if rows == 2 else [1.0],
+        shared_xaxes=True,
+        shared_yaxes=shared_y,
+        horizontal_spacing=0.035 if shared_y else 0.09,
+        vertical_spacing=0.07,
+    )
+    return figure
+
+
+def _add_line(figure: go.Figure, name: str, x: Array, y: Array, row: int, column: int, *, legend: bool) -> None:
+    figure.add_scatter(
+        x=_rounded(x),
+        y=_rounded(y),
+        name=name,
+        legendgroup=name,
+        showlegend=legend,
+        mode="lines",
+        line=_LINES[name],
+        hovertemplate="%{y:.5g} at %{x:.2f} mm",
+        row=row,
+        col=column,
+    )
+
+
+def _add_points(figure: go.Figure, x: Array, y: Array, row: int, column: int, *, legend: bool) -> None:
+    figure.add_scatter(
+        x=_rounded(x),
+        y=_rounded(y),
+        name=TRUTH_NAME,
+        legendgroup=TRUTH_NAME,
+        showlegend=legend,
+        mode="markers",
+        marker=_POINTS,
+        hovertemplate="%{y:.5g} at %{x:.2f} mm",
+        row=row,
+        col=column,
+    )
+
+
+def _rounded(values: Array) -> list[float]:
+    """Seven significant digits are more than a figure shows, and half the page."""
+    return [float(f"{value:.7g}") for value in values]
+
+
+def _styled(figure: go.Figure, height: int) -> go.Figure:
+    figure.update_layout(
+        template="none",
+        height=height,
+        autosize=True,
+        margin={"l": 64, "r": 12, "t": 64, "b": 52},
+        paper_bgcolor="rgba(0,0,0,0)",
+        plot_bgcolor="rgba(0,0,0,0)",
+        font={"family": FONT, "size": 13, "color": INK},
+        legend={"orientation": "h", "x": 0.0, "xanchor": "left", "y": 1.0, "yref": "container", "yanchor": "top"},
+        hovermode="closest",
+    )
+    figure.update_annotations(font={"size": 14, "color": INK})
+    figure.update_xaxes(
+        gridcolor=GRID, zeroline=False, linecolor="#9AA5B1", ticks="outside", tickcolor="#9AA5B1", showline=True
+    )
+    figure.update_yaxes(
+        gridcolor=GRID, zerolinecolor="#C3CCD6", zeroline=True, linecolor="#9AA5B1", showline=True, automargin=True
+    )
+    return figure

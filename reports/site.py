@@ -1,0 +1,331 @@
+"""The report: one self-contained HTML page, and the results as JSON beside it.
+
+The page fetches nothing: plotly's script, styles, pictures and data all stand in it, and its content security policy
+forbids the rest.
+"""
+
+from __future__ import annotations
+
+import base64
+import json
+import math
+from collections import Counter
+from dataclasses import asdict, dataclass
+from datetime import UTC, datetime
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from jinja2 import Environment, FileSystemLoader, StrictUndefined, select_autoescape
+from markupsafe import Markup
+from plotly.offline import get_plotlyjs
+
+from cases.case import QUANTITIES
+from reports.figures import deflection_figure, moment_figure, pressure_figure
+from reports.formatting import KIND_NAMES, MODEL_NAMES, measure, number, seconds, stretches, title, values
+from reports.processes import ProcessFailed, in_own_process
+from reports.quantities import DEFINITIONS
+from reports.result import result
+from reports.runner import ROD_REPEATS, CaseRun, Failure
+from reports.sketch import scene_sketch
+from reports.store import write_whole
+from reports.truth import independent_values
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    import plotly.graph_objects as go
+
+    from reports.comparison import Comparison, Verdict
+    from reports.processes import Progress
+    from reports.runner import Run
+
+HERE = Path(__file__).parent
+
+DEFLECTION_CAPTION = "Below: difference from the 3D of this run, finest mesh, in micrometres."
+PRESSURE_CAPTION = (
+    "At an edge inside the zone the pressure falls like the square root of the distance; at the corner of a bar "
+    "it is singular, and no mesh gives its value there."
+)
+MOMENT_CAPTION = (
+    "Above: from equilibrium of loads and contact forces. Below: how far the moment of the computed stress is from "
+    "it, a check of each model on itself; it is largest at clamps, whose corners are singular."
+)
+
+
+@dataclass(frozen=True)
+class DrawnPicture:
+    """A PNG picture ready for the page, or, with no data, why there is none."""
+
+    data: str
+    width: int
+    height: int
+    magnification: str
+    problem: str
+
+
+def write_report(runs: Sequence[CaseRun | Failure], output: Path) -> Path:
+    """Write `index.html` and `results/*.json` into the folder `output`; returns the page's path.
+
+    Raises
+    ------
+    OSError
+        if the folder or a file cannot be written.
+    """
+    page = render(runs, pictures(runs))
+    for run in runs:
+        if isinstance(run, CaseRun):
+            _write_results(run, output / "results")
+    write_whole(output / "index.html", page)
+    return output / "index.html"
+
+
+def render(runs: Sequence[CaseRun | Failure], drawn: Mapping[str, DrawnPicture]) -> str:
+    """The page as HTML."""
+    environment = Environment(
+        loader=FileSystemLoader(HERE),
+        autoescape=select_autoescape(default=True, default_for_string=True),
+        undefined=StrictUndefined,
+        trim_blocks=True,
+    )
+    environment.globals.update(verdict=_verdict_mark, verdicts=_verdict_marks)
+    cases, figures = [], {}
+    for index, run in enumerate(runs, start=1):
+        anchor = f"case-{index}"
+        if isinstance(run, Failure):
+            cases.append(_failed_case(run, anchor))
+            continue
+        case, found = _case(run, anchor, drawn[run.case.name])
+        cases.append(case)
+        figures.update(found)
+    return environment.get_template("page.html.jinja").render(
+        css=Markup((HERE / "page.css").read_text(encoding="utf-8")),
+        plotly=Markup(get_plotlyjs()),
+        figures=_script_json(figures),
+        date=datetime.now(UTC).strftime("%d %B %Y, %H:%M UTC"),
+        version=_version(),
+        cases=cases,
+        definitions=DEFINITIONS.values(),
+        repeats=ROD_REPEATS,
+    )
+
+
+def pictures(runs: Sequence[CaseRun | Failure]) -> dict[str, DrawnPicture]:
+    """3D pictures of the rod model's deformed bars by case name, drawn in a process of their own."""
+    solved = [run for run in runs if isinstance(run, CaseRun)]
+    try:
+        return in_own_process(_draw_all, solved)
+    except ProcessFailed as error:
+        missing = DrawnPicture("", 0, 0, "", f"drawing failed, {error}")
+        return {run.case.name: missing for run in solved}
+
+
+def _draw_all(runs: Sequence[CaseRun], progress: Progress) -> dict[str, DrawnPicture]:
+    from reports.picture import SIZE, draw
+
+    drawn = {}
+    for run in runs:
+        progress(run.case.name)
+        picture = draw(run.case.scene, run.rod.quantities)
+        data = base64.b64encode(picture.png).decode("ascii")
+        drawn[run.case.name] = DrawnPicture(data, *SIZE, f"{picture.magnification:g}", "")
+    return drawn
+
+
+def _version() -> str:
+    try:
+        return version("rodcheck")
+    except PackageNotFoundError:
+        return "not installed"
+
+
+def _script_json(value: object) -> Markup:
+    """JSON that may stand inside a script element."""
+    text = json.dumps(value, separators=(",", ":"), allow_nan=False)
+    return Markup(text.replace("<", "\\u003c"))
+
+
+def _verdict_mark(verdict: Verdict) -> Markup:
+    return Markup('<span class="verdict {}">{}</span>').format(verdict.replace(" ", "-"), verdict)
+
+
+def _verdict_marks(counts: Mapping[Verdict, int]) -> Markup:
+    marks = [
+        Markup('<span class="verdict {}">{} {}</span>').format(verdict.replace(" ", "-"), count, verdict)
+        for verdict, count in counts.items()
+        if count
+    ]
+    return Markup(" ").join(marks)
+
+
+def _failed_case(run: Failure, anchor: str) -> dict[str, Any]:
+    return {
+        "anchor": anchor,
+        "name": run.case.name,
+        "title": run.case.title,
+        "description": run.case.description,
+        "counts": {},
+        "headline": [[]] * 5,
+        "failure": run.reason,
+        "sketch": scene_sketch(run.case.scene),
+        "sketch_caption": _sketch_caption(run.case.scene.contacts),
+    }
+
+
+def _case(run: CaseRun, anchor: str, picture: DrawnPicture) -> tuple[dict[str, Any], dict[str, Any]]:
+    """What the template needs to know of a case, and its figures by the id of their place."""
+    case, finest = run.case, run.references[-1]
+    truth = None if case.independent is None else independent_values(case.independent, case.scene)
+    drawn = [
+        (
+            "Deflection of the centre lines",
+            DEFLECTION_CAPTION,
+            deflection_figure(run, truth),
+        ),
+        *(
+            (
+                f"Contact pressure, {pair.name}",
+                PRESSURE_CAPTION,
+                pressure_figure(run, pair.name, truth),
+            )
+            for pair in case.scene.contacts
+        ),
+        (
+            "Bending moment",
+            MOMENT_CAPTION,
+            moment_figure(run),
+        ),
+    ]
+    figures, places = {}, []
+    for number_, (heading, caption, figure) in enumerate(drawn, start=1):
+        place = f"{anchor}-figure-{number_}"
+        figures[place] = _plain(figure)
+        alt = f"{heading} of {case.title}, rod model and 3D; the numbers are in the results beside the page."
+        height = figure.layout.height
+        places.append({"anchor": place, "title": heading, "caption": caption, "alt": alt, "height": height})
+    counts: dict[str, int] = dict.fromkeys(("pass", "fail", "not resolved"), 0)
+    counts.update(Counter(comparison.verdict for comparison in run.comparisons))
+    warnings = [
+        f"{solver} did not converge: {answer.quantities.outcome}"
+        for solver, answer in _solvers(run)
+        if not answer.quantities.converged
+    ]
+    content = {
+        "anchor": anchor,
+        "name": case.name,
+        "title": case.title,
+        "description": case.description,
+        "counts": counts,
+        "headline": _headline(run.rod, finest),
+        "failure": "",
+        "warnings": warnings,
+        "sketch": scene_sketch(case.scene),
+        "sketch_caption": _sketch_caption(case.scene.contacts),
+        "level": run.rod.level,
+        "order": run.rod.order,
+        "published": [_row(found) for found in run.comparisons if found.kind == "published"],
+        "figures": places,
+        "picture": picture if picture.data else None,
+        "no_picture": picture.problem,
+        "checks": _check_groups(run.comparisons),
+        "costs": [_cost_row(solver, answer) for solver, answer in _solvers(run)],
+    }
+    return content, figures
+
+
+def _plain(figure: go.Figure) -> dict[str, Any]:
+    plain: dict[str, Any] = json.loads(figure.to_json())
+    return plain
+
+
+def _sketch_caption(contacts: Sequence[Any]) -> str:
+    pairs = [
+        f"{pair.name}: {pair.first.face} face of {pair.first.rod} and {pair.second.face} face of {pair.second.rod} "
+        f"may touch in the marked zone, gap {pair.gap:g} mm, penalty {pair.penalty:g} N/mm³"
+        for pair in contacts
+    ]
+    return "The scene from the side. " + "; ".join(pairs) + ("." if pairs else "")
+
+
+def _solvers(run: CaseRun) -> list[tuple[str, Run]]:
+    rod = (f"Rod model h{run.rod.level}, p = {run.rod.order}", run.rod)
+    meshes = [(f"3D, mesh {index} of {len(run.references)}", answer) for index, answer in enumerate(run.references, 1)]
+    return [rod, *meshes]
+
+
+def _headline(rod: Run, reference: Run) -> list[list[str]]:
+    """Cells of the table of all cases: a line for the rod model and one for 3D."""
+    answers = (rod, reference)
+
+    def largest(run: Run) -> float:
+        return max(float(np.linalg.norm(found.displacement, axis=0).max()) for found in run.quantities.rods)
+
+    return [
+        [", ".join(number(contact.force, 5) for contact in run.quantities.contacts) for run in answers],
+        [
+            "; ".join(stretches(np.ravel(contact.edges).tolist()) for contact in run.quantities.contacts)
+            for run in answers
+        ],
+        [number(largest(run), 5) for run in answers],
+        [f"{run.quantities.unknowns:,}".replace(",", " ") for run in answers],
+        [seconds(run.total_seconds) for run in answers],
+    ]
+
+
+def _row(found: Comparison) -> dict[str, str]:
+    unit = QUANTITIES[found.quantity].unit
+    certain = found.kind == "published"
+    return {
+        "title": title(found),
+        "definition": DEFINITIONS[found.quantity].text,
+        "value": f"{values(found.quantity, found.value)} {unit}",
+        "reference": f"{values(found.quantity, found.reference)} {unit}",
+        "difference": measure(found.quantity, found.difference),
+        "uncertainty": "as printed" if certain else measure(found.quantity, found.uncertainty),
+        "tolerance": measure(found.quantity, found.tolerance),
+        "verdict": found.verdict,
+        "reason": found.reason,
+        "source": found.source,
+    }
+
+
+def _check_groups(comparisons: Sequence[Comparison]) -> list[dict[str, Any]]:
+    """Rows under a heading for each model and what it is held against."""
+    headings = dict.fromkeys((found.model, found.kind, found.source) for found in comparisons)
+    groups = []
+    for model, kind, source in headings:
+        name = MODEL_NAMES[model][0].upper() + MODEL_NAMES[model][1:]
+        rows = [
+            _row(found) for found in comparisons if (found.model, found.kind, found.source) == (model, kind, source)
+        ]
+        groups.append({"title": f"{name} against {KIND_NAMES[kind]}: {source}", "rows": rows})
+    return groups
+
+
+def _cost_row(solver: str, answer: Run) -> dict[str, str]:
+    quantities = answer.quantities
+    return {
+        "solver": solver,
+        "unknowns": f"{quantities.unknowns:,}".replace(",", " "),
+        "setup": seconds(quantities.setup_seconds),
+        "solve": seconds(quantities.solve_seconds),
+        "total": seconds(answer.total_seconds),
+        "contact_solutions": str(quantities.contact_solutions),
+        "memory": f"{answer.peak_memory:.0f} MB",
+        "residual": f"{quantities.equilibrium_residual:.1e}",
+        "penetration": f"{max((contact.penetration for contact in quantities.contacts), default=0.0):.1e} mm",
+        "outcome": quantities.outcome,
+    }
+
+
+def _write_results(run: CaseRun, folder: Path) -> None:
+    """Both models' result objects and the comparisons, one JSON file each."""
+    for answer in (run.rod, run.references[-1]):
+        found = result(run.case.name, answer.model, answer.level, answer.order, answer.quantities, answer.total_seconds)
+        write_whole(folder / f"{run.case.name}-{answer.model}.json", found.model_dump_json(indent=1) + "\n")
+    comparisons = [
+        {key: None if value == math.inf else value for key, value in asdict(found).items()} for found in run.comparisons
+    ]
+    text = json.dumps(comparisons, indent=1, allow_nan=False)
+    write_whole(folder / f"{run.case.name}-comparisons.json", text + "\n")
