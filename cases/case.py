@@ -5,14 +5,12 @@ Case files are read by `cases.loader`; what a quantity is and how it is evaluate
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal
+from pathlib import Path
+from typing import Literal
 
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-    from pathlib import Path
-
-    from cases.scene import Scene, Vector
+from cases.scene import Scene, Vector
 
 Quantity = Literal[
     "contact_force",

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import json
 import tomllib
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from difflib import get_close_matches
 from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from cases.case import QUANTITIES, Case, Check, Published, RodModelSettings
+from cases.case import QUANTITIES, Case, Check, Published, Quantity, RodModelSettings
 from cases.scene import (
     Clamp,
     ContactPair,
@@ -22,16 +23,13 @@ from cases.scene import (
     Scene,
     SceneError,
     SectionForce,
+    Vector,
 )
 from cases.units import UnitError, to_unit
 
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
-
+if TYPE_CHECKING:  # the schema brings pydantic, which listing the library does without
     from pydantic_core import ErrorDetails
 
-    from cases.case import Quantity
-    from cases.scene import Vector
     from cases.schema import CaseFile, CompareTable, PublishedTable
 
 LIBRARY = Path(__file__).parent / "library"
@@ -206,7 +204,7 @@ def _shown(value: object) -> str:
     """A value of a TOML file, on one line and not too long."""
     if isinstance(value, dict):
         return "a table"
-    text = json.dumps(value, ensure_ascii=False, default=str)
+    text = json.dumps(value, ensure_ascii=False, default=str).replace("NaN", "nan").replace("Infinity", "inf")
     return text if len(text) <= 60 else text[:57] + "..."
 
 

@@ -12,7 +12,7 @@ from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, StrictInt, S
 
 from cases.case import Quantity
 from cases.scene import End, Face
-from cases.units import EXAMPLES, QUANTITY_PATTERN, Unit, UnitError, to_unit
+from cases.units import EXAMPLES, LARGEST, QUANTITY_PATTERN, Unit, UnitError, to_unit
 
 _FORMS = [{"type": "number"}, {"type": "string", "pattern": QUANTITY_PATTERN}]
 
@@ -25,7 +25,7 @@ def _with_unit(unit: Unit) -> tuple[BeforeValidator, WithJsonSchema]:
 
 
 def _plain_number(value: object) -> float:
-    if isinstance(value, bool) or not isinstance(value, (int, float)) or not abs(value) < float("inf"):
+    if isinstance(value, bool) or not isinstance(value, (int, float)) or not abs(value) <= LARGEST:
         raise UnitError("a number without unit is needed, such as 0.3")
     return float(value)
 

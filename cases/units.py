@@ -17,6 +17,9 @@ if TYPE_CHECKING:
 
 Unit = Literal["mm", "N", "MPa", "N mm", "N/mm^3", "%"]
 
+# Beyond any length, force or stress, and far from where their products overflow.
+LARGEST = 1e30
+
 # What each unit measures, and how it may be written.
 EXAMPLES: dict[Unit, tuple[str, str]] = {
     "mm": ("a length", '15 (mm) or "0.5 mm"'),
@@ -127,6 +130,6 @@ def to_unit(value: object, wanted: Unit) -> float:
             number = math.inf
     else:
         raise UnitError(remedy)
-    if not math.isfinite(number):
-        raise UnitError(f"{what} must be finite")
+    if not abs(number) <= LARGEST:
+        raise UnitError(f"{what} must be finite, and at most {LARGEST:g} {wanted}")
     return number

@@ -1,5 +1,6 @@
 """Numbers with units: what is accepted, what it means, and what is refused."""
 
+import contextlib
 import math
 
 import pytest
@@ -93,7 +94,5 @@ def test_prefixes_scale_by_powers_of_ten(value, prefix):
 @given(text=st.text(max_size=30))
 def test_no_text_raises_anything_but_a_unit_error(text):
     for written in (text, f"1 {text}", f"1 mm{text}"):
-        try:
+        with contextlib.suppress(UnitError):
             assert math.isfinite(to_unit(written, "mm"))
-        except UnitError:
-            pass
