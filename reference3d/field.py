@@ -93,10 +93,24 @@ def stress(field: Field, material: Material, points: Array) -> Array:
 
 
 def section_resultants(field: Field, material: Material, station: Array) -> Array:
-    """N, Q1, Q2, M1, M2, T (`reports.solution`) by Gauss points in the section's elements, shape (6, n).
+    """N, Q1, Q2, M1, M2, T (`reports.solution`) from the finite element stress, shape (6, n).
 
-    Three points along each axis integrate the stress of a 27-node box exactly.
+    The stress of quadratic elements is most accurate at the two Gauss points along the element (J. Barlow,
+    International Journal for Numerical Methods in Engineering 10 (1976) 243-251): the section integrals are taken
+    there and are linear along the element. Where two elements meet, the result is their mean.
     """
+    borders, place = field.borders.s, 1.0 / np.sqrt(3.0)
+    found = []
+    for side in SIDES:
+        element, xi = locate(borders, np.asarray(station, dtype=np.float64), side)
+        middle, half = 0.5 * (borders[element + 1] + borders[element]), 0.5 * np.diff(borders)[element]
+        before, after = (_integrals(field, material, middle + sign * place * half) for sign in (-1.0, 1.0))
+        found.append(0.5 * (before + after) + (after - before) * (xi / (2.0 * place)))
+    return np.asarray(np.mean(found, axis=0))
+
+
+def _integrals(field: Field, material: Material, station: Array) -> Array:
+    """Integrals of the stress over the section, shape (6, n), by three Gauss points along each axis, exactly."""
     root, weight = np.polynomial.legendre.leggauss(3)
     places, weights = [], []
     for axis in (field.borders.x, field.borders.y):
@@ -105,7 +119,6 @@ def section_resultants(field: Field, material: Material, station: Array) -> Arra
         weights.append((half[:, None] * weight).ravel())
     x, y = (place.ravel() for place in np.meshgrid(*places, indexing="ij"))
     area = np.outer(*weights).ravel()
-    station = np.asarray(station, dtype=np.float64)
     points = np.stack([np.tile(x, len(station)), np.tile(y, len(station)), np.repeat(station, len(x))])
     _, _, ss, ys, xs, _ = stress(field, material, points).reshape(6, len(station), len(x))
     return np.stack([ss @ area, xs @ area, ys @ area, ss @ (area * y), -ss @ (area * x), (ys * x - xs * y) @ area])
