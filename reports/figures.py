@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from cases.scene import Rod
-    from reports.quantities import PressureProfile, RodQuantities
+    from reports.quantities import ContactQuantities, PressureProfile, RodQuantities
     from reports.runner import CaseRun
     from reports.solution import Array
     from reports.truth import IndependentValues
@@ -56,7 +56,7 @@ def deflection_figure(run: CaseRun, truth: IndependentValues | None) -> go.Figur
             apart = 1000.0 * (values - reference.displacement[component, at])
             _add_points(figure, x[at], apart, 2, column, legend=False)
         figure.update_yaxes(title_text=f"u<sub>{AXES[component]}</sub>, mm", row=1, col=column)
-        figure.update_yaxes(title_text="minus 3D, µm", row=2, col=column)
+        figure.update_yaxes(title_text="difference, µm", row=2, col=column)
         figure.update_xaxes(title_text=f"{_axis_name(rod)}, mm", row=2, col=column)
     return _styled(figure, 460)
 
@@ -72,8 +72,8 @@ def pressure_figure(run: CaseRun, pair: str, truth: IndependentValues | None) ->
     figure = _panels(titles, rows=1, shared_y=True)
     for column, part in enumerate(("middle", "mean", "outer"), start=1):
         first = column == 1
-        for name, found in ((ROD_NAME, model.pressure), (REFERENCE_NAME, reference.pressure)):
-            _add_line(figure, name, found.position, getattr(found, part), 1, column, legend=first)
+        for name, found in ((ROD_NAME, model), (REFERENCE_NAME, reference)):
+            _add_line(figure, name, *_to_the_edges(found, part), 1, column, legend=first)
         if independent is not None:
             positions, values = _thinned(independent, part)
             _add_points(figure, positions, values, 1, column, legend=first)
@@ -114,8 +114,10 @@ def moment_figure(run: CaseRun) -> go.Figure:
             _add_line(figure, name, x, moment, 1, column, legend=column == 1)
             _add_line(figure, name, x, found.stress[3] / 1000.0 - moment, 2, column, legend=False)
         figure.update_yaxes(title_text="M<sub>1</sub>, kN mm", row=1, col=column)
-        figure.update_yaxes(title_text="stress minus<br>equilibrium, kN mm", row=2, col=column)
+        figure.update_yaxes(title_text="difference, kN mm", row=2, col=column)
         figure.update_xaxes(title_text=f"{_axis_name(rod)}, mm", row=2, col=column)
+        margin = 0.03 * rod.length
+        figure.update_xaxes(range=[x.min() - margin, x.max() + margin], col=column)
     return _styled(figure, 460)
 
 
@@ -127,6 +129,19 @@ def _axis_name(rod: Rod) -> str:
 def _along(rod: Rod, found: RodQuantities) -> Array:
     position: Array = found.position[AXES.index(_axis_name(rod))]
     return position
+
+
+def _to_the_edges(contact: ContactQuantities, part: str) -> tuple[Array, Array]:
+    """Pressure along the zone with a zero at each edge that lies between stations, mm and MPa."""
+    pressure = contact.pressure
+    stretches = contact.edges if part == "middle" else contact.edges_outer
+    inside = [
+        edge for stretch in stretches for edge in stretch if pressure.position.min() < edge < pressure.position.max()
+    ]
+    x = np.concatenate([pressure.position, inside])
+    y = np.concatenate([getattr(pressure, part), np.zeros(len(inside))])
+    order = np.argsort(x, kind="stable")
+    return x[order], y[order]
 
 
 def _thinned(profile: PressureProfile, part: str, most: int = 70) -> tuple[Array, Array]:
@@ -142,7 +157,7 @@ def _panels(titles: Sequence[str], rows: int, *, shared_y: bool = False) -> go.F
         rows=rows,
         cols=len(titles),
         subplot_titles=list(titles),
-        row_heights=[0.64, 0.36] if rows == 2 else [1.0],
+        row_heights=[0.6, 0.4] if rows == 2 else [1.0],
         shared_xaxes=True,
         shared_yaxes=shared_y,
         horizontal_spacing=0.035 if shared_y else 0.09,
@@ -191,7 +206,7 @@ def _styled(figure: go.Figure, height: int) -> go.Figure:
         template="none",
         height=height,
         autosize=True,
-        margin={"l": 64, "r": 12, "t": 64, "b": 52},
+        margin={"l": 64, "r": 12, "t": 60, "b": 56},
         paper_bgcolor="rgba(0,0,0,0)",
         plot_bgcolor="rgba(0,0,0,0)",
         font={"family": FONT, "size": 13, "color": INK},

@@ -43,7 +43,7 @@ if TYPE_CHECKING:
 
 HERE = Path(__file__).parent
 
-DEFLECTION_CAPTION = "Below: difference from the 3D of this run, finest mesh, in micrometres."
+DEFLECTION_CAPTION = "Below: difference from the 3D of this run on its finest mesh, in micrometres."
 PRESSURE_CAPTION = (
     "At an edge inside the zone the pressure falls like the square root of the distance; at the corner of a bar "
     "it is singular, and no mesh gives its value there."
@@ -291,8 +291,10 @@ def _row(found: Comparison) -> dict[str, str]:
 
 
 def _check_groups(comparisons: Sequence[Comparison]) -> list[dict[str, Any]]:
-    """Rows under a heading for each model and what it is held against."""
-    headings = dict.fromkeys((found.model, found.kind, found.source) for found in comparisons)
+    """Rows under a heading for each model and what it is held against; published values have their own table."""
+    headings = dict.fromkeys(
+        (found.model, found.kind, found.source) for found in comparisons if found.kind != "published"
+    )
     groups = []
     for model, kind, source in headings:
         name = MODEL_NAMES[model][0].upper() + MODEL_NAMES[model][1:]

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from cases.scene import Rod, Scene
     from reports.solution import Array
 
-MARGIN = 34.0
+MARGIN = 46.0
 
 
 def scene_sketch(scene: Scene) -> Markup:
@@ -29,7 +29,7 @@ def scene_sketch(scene: Scene) -> Markup:
     parts += _clamps(scene, plane)
     parts += _loads(scene, plane)
     parts += _positions(scene, plane, base)
-    left, top = low[0] - MARGIN, -high[1] - 62.0
+    left, top = low[0] - MARGIN, -high[1] - 48.0
     width, height = high[0] - low[0] + 2 * MARGIN, base + 30.0 - top
     label = f"Side view of the scene {scene.name}: " + "; ".join(_described(rod) for rod in scene.rods)
     body = "".join(parts)
@@ -132,7 +132,7 @@ def _positions(scene: Scene, plane: Array, base: float) -> list[str]:
     for x, label in marks:
         parts.append(f'<line class="axis" x1="{x}" y1="{base - 3:.1f}" x2="{x}" y2="{base + 3:.1f}"/>')
         parts.append(f'<text class="tick" x="{x}" y="{base + 14:.1f}">{label:g}</text>')
-    parts.append(f'<text class="tick" x="{last + 26:.1f}" y="{base + 14:.1f}">{AXES[axis]}, mm</text>')
+    parts.append(f'<text class="tick" x="{last + 28:.1f}" y="{base + 3:.1f}">{AXES[axis]}, mm</text>')
     return parts
 
 
