@@ -33,6 +33,7 @@ app = App(
     name="rodcheck",
     help="Rods in contact, solved by a hierarchic rod model and as a 3D solid, and held against each other.",
     help_format="plaintext",
+    suppress_keyboard_interrupt=False,
 )
 schema_app = App(name="schema", help="Print a JSON Schema.")
 app.command(schema_app)
@@ -53,12 +54,16 @@ def run(arguments: Sequence[str]) -> int:
     """Run a command line and return its exit code."""
     from cases.loader import CaseError
     from cases.scene import SceneError
+    from reports.quantities import SolutionError
 
     try:
         code = app(list(arguments), exit_on_error=False, print_error=False, result_action="return_value")
     except (CycloptsError, CaseError, SceneError, InputError) as error:
         print("rodcheck:", " ".join(str(error).split()), file=sys.stderr)
         return BAD_INPUT
+    except SolutionError as error:
+        print("rodcheck:", error, file=sys.stderr)
+        return NOT_PASSED
     except KeyboardInterrupt:
         print("rodcheck: interrupted", file=sys.stderr)
         return INTERRUPTED

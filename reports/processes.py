@@ -73,9 +73,10 @@ def _worker(work: Callable[[Given, Progress], Found], given: Given, sender: Conn
 def failure_reason(error: BaseException) -> str:
     """An exception in one line: what it says and, for one nobody meant to raise, where it came from."""
     from cases.scene import SceneError
+    from reports.quantities import SolutionError
 
     text = " ".join(str(error).split())
-    if isinstance(error, SceneError):
+    if isinstance(error, SceneError | SolutionError):
         return text
     where = traceback.extract_tb(error.__traceback__)[-1]
     return f"{type(error).__name__}: {text} ({Path(where.filename).name}, line {where.lineno})"

@@ -22,6 +22,10 @@ if TYPE_CHECKING:
     from reports.solution import Array, ContactProfile, Solution
 
 
+class SolutionError(Exception):
+    """A solution that has no quantities; the message says why, in one sentence."""
+
+
 @dataclass(frozen=True)
 class Definition:
     """What a quantity is: its title, its unit ('' for none) and its definition in words."""
@@ -242,10 +246,15 @@ def evaluate(
     ----------
     stations : further stations per rod, arc length, mm, added to `default_stations`
     stress_points : rod and (x, y, s), mm, where sigma_s is wanted
+
+    Raises
+    ------
+    SolutionError
+        if the solution holds numbers that are not finite.
     """
     scene = solution.scene
     extra = stations or {}
-    return Quantities(
+    quantities = Quantities(
         outcome=solution.outcome,
         contacts=tuple(contact_quantities(solution, pair) for pair in scene.contacts),
         rods=tuple(
@@ -262,6 +271,20 @@ def evaluate(
         setup_seconds=solution.cost.setup_seconds,
         solve_seconds=solution.cost.solve_seconds,
     )
+    _require_finite(quantities)
+    return quantities
+
+
+def _require_finite(quantities: Quantities) -> None:
+    numbers = [np.array([quantities.strain_energy, quantities.equilibrium_residual])]
+    numbers += [np.array(list(quantities.point_stresses.values())), *quantities.reactions.values()]
+    for rod in quantities.rods:
+        numbers += [rod.displacement, rod.equilibrium, rod.stress]
+    for contact in quantities.contacts:
+        pressure = contact.pressure
+        numbers += [contact.resultant, pressure.middle, pressure.mean, pressure.outer]
+    if not all(np.isfinite(array).all() for array in numbers):
+        raise SolutionError(f"the solution holds numbers that are not finite ({quantities.outcome})")
 
 
 def default_stations(rod: Rod) -> Array:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pytest
 
+from cases.loader import load_case
 from cases.scene import (
     Clamp,
     ContactPair,
@@ -19,12 +20,16 @@ from cases.scene import (
     Scene,
     SectionForce,
 )
+from reports.case_comparison import case_comparisons, evaluation_points
+from reports.comparison import Extrapolation
+from reports.quantities import evaluate
+from reports.runner import CaseRun, Run
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from cases.scene import End
-    from reports.solution import Array
+    from reports.solution import Array, Model
 
 LENGTH = 300.0
 SIDE = 15.0
@@ -138,9 +143,7 @@ def _scene(young_modulus_upper: float = 50_000.0) -> Scene:
         Material(young_modulus_upper, 0.3),
         (0.0, 33.33, 66.67, 100.0, 166.67, 233.33, 300.0),
     )
-    pair = ContactPair(
-        "overlap", RodFace("lower", "top"), RodFace("upper", "bottom"), (200.0, 300.0), 0.0, 1e6
-    )
+    pair = ContactPair("overlap", RodFace("lower", "top"), RodFace("upper", "bottom"), (200.0, 300.0), 0.0, 1e6)
     return Scene(
         "two-cantilevers",
         (lower, upper),
@@ -184,9 +187,32 @@ def hertz_contact() -> Callable[..., FakeContact]:
 def beam_solution(beam_scene: Scene) -> Callable[..., BeamSolution]:
     """Closed-form solution for a contact of given centre, half width (mm) and force (N)."""
 
-    def build(
-        centre: float = 250.0, half_width: float = 12.0, force: float = 320.0, **changes: Any
-    ) -> BeamSolution:
+    def build(centre: float = 250.0, half_width: float = 12.0, force: float = 320.0, **changes: Any) -> BeamSolution:
         return BeamSolution(beam_scene, _hertz_contact(centre, half_width, force), **changes)
 
     return build
+
+
+def _second_order(coarse: float, medium: float, fine: float) -> Extrapolation:
+    """Richardson's extrapolation of second order with halved meshes."""
+    del coarse
+    return Extrapolation(fine + (fine - medium) / 3.0, abs(fine - medium), 2.0)
+
+
+@pytest.fixture
+def case_run() -> CaseRun:
+    """A case of the library as if solved: closed forms for the rod model and for three 3D meshes."""
+    case = load_case("two-cantilevers-e20-g0")
+    points = evaluation_points(case)
+
+    def run(model: Model, force: float, level: int | None = None, order: int | None = None) -> Run:
+        solution = BeamSolution(case.scene, _hertz_contact(250.0, 12.0, force))
+        quantities = evaluate(solution, points.stations, points.stress_points)
+        return Run(model, level, order, quantities, 0.05, 123.0)
+
+    rod = run("rod", 320.0, 5, 6)
+    references = tuple(run("reference", force) for force in (316.0, 319.0, 319.75))
+    comparisons = case_comparisons(
+        case, rod.quantities, [reference.quantities for reference in references], _second_order
+    )
+    return CaseRun(case, rod, references, comparisons)

@@ -50,9 +50,7 @@ def test_without_contact_there_is_no_centre_and_no_edge(
 ) -> None:
     solution = beam_solution()
     zero = np.zeros_like(solution.contact_points("overlap").force)
-    apart = replace(
-        solution.contact_points("overlap"), force=zero, middle=zero, outer=zero, mean=zero, gap=zero + 0.5
-    )
+    apart = replace(solution.contact_points("overlap"), force=zero, middle=zero, outer=zero, mean=zero, gap=zero + 0.5)
 
     contact = evaluate(replace(solution, contact=apart)).contact("overlap")
 

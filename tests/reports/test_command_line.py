@@ -1,0 +1,215 @@
+"""The command line: what stands on which stream, and exit codes."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import jsonschema
+import pytest
+
+from cases.loader import library_names
+from reports import command_line
+from reports.runner import Failure
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from pathlib import Path
+
+    from reports.runner import CaseRun
+
+CASE = "two-cantilevers-e50-g0"
+
+
+def passing(run: CaseRun) -> CaseRun:
+    return replace(run, comparisons=tuple(replace(found, verdict="pass") for found in run.comparisons))
+
+
+@pytest.fixture
+def solved(monkeypatch: pytest.MonkeyPatch):
+    """Answer `compare` and `report` with given runs instead of solving."""
+
+    def answer(*runs: CaseRun | Failure) -> None:
+        monkeypatch.setattr("reports.progress.run_cases", lambda _cases, _progress: iter(runs))
+
+    return answer
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ["solve"],
+        ["solve", "no-such-case"],
+        ["solve", CASE, "--lvel", "3"],
+        ["solve", CASE, "--level", "0"],
+        ["solve", CASE, "--level", "99"],
+        ["solve", CASE, "--level", "five"],
+        ["solve", CASE, "--order", "1"],
+        ["solve", CASE, "--model", "abaqus"],
+        ["solve", CASE, "--model", "reference", "--level", "3"],
+        ["solve", CASE, CASE],
+        ["compare"],
+        ["compare", CASE, CASE],
+        ["compare", CASE, "no-such-case"],
+        ["report", "no-such-case"],
+        ["schema", "nothing"],
+        ["nonsense"],
+    ],
+    ids=" ".join,
+)
+def test_bad_input_is_one_sentence_on_standard_error_and_exit_code_2(
+    arguments: Sequence[str], capsys: pytest.CaptureFixture[str]
+) -> None:
+    code = command_line.run(arguments)
+
+    shown = capsys.readouterr()
+    assert code == 2
+    assert shown.out == ""
+    assert shown.err.startswith("rodcheck: ")
+    assert shown.err.count("\n") == 1
+    assert "Traceback" not in shown.err
+
+
+def test_a_case_file_with_a_fault_is_bad_input(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    file = tmp_path / "broken.toml"
+    file.write_text("title = ")
+
+    code = command_line.run(["solve", str(file)])
+
+    shown = capsys.readouterr()
+    assert (code, shown.out) == (2, "")
+    assert "broken.toml" in shown.err
+    assert shown.err.count("\n") == 1
+
+
+def test_list_prints_every_case_with_its_title(capsys: pytest.CaptureFixture[str]) -> None:
+    assert command_line.run(["list"]) == 0
+
+    lines = capsys.readouterr().out.splitlines()
+    assert [line.split()[0] for line in lines] == list(library_names())
+
+
+def test_solve_json_prints_exactly_one_object_that_the_schema_describes(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    assert command_line.run(["schema", "result"]) == 0
+    schema = json.loads(capsys.readouterr().out)
+
+    code = command_line.run(["solve", CASE, "--level", "2", "--order", "3", "--json"])
+
+    shown = capsys.readouterr()
+    printed = json.loads(shown.out)
+    assert code == 0
+    jsonschema.validate(printed, schema)
+    assert (printed["case"], printed["model"], printed["level"], printed["order"]) == (CASE, "rod", 2, 3)
+    assert printed["converged"] is True
+
+
+def test_solve_for_people_names_units(capsys: pytest.CaptureFixture[str]) -> None:
+    assert command_line.run(["solve", CASE, "--level", "2", "--order", "3"]) == 0
+
+    shown = capsys.readouterr().out
+    for text in ("force, N", "edges middle, mm", "M/W, MPa", "h2, p = 3", "converged"):
+        assert text in shown
+
+
+def test_an_unconverged_solve_shows_its_result_and_exits_with_1(
+    case_run: CaseRun, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    unfinished = replace(case_run.rod, quantities=replace(case_run.rod.quantities, outcome="cycling"))
+    monkeypatch.setattr("reports.runner.run_rod", lambda *_: unfinished)
+
+    code = command_line.run(["solve", CASE, "--json"])
+
+    shown = capsys.readouterr()
+    assert code == 1
+    assert json.loads(shown.out)["converged"] is False
+    assert "not converged: cycling" in shown.err
+
+
+def test_case_schema_is_json(capsys: pytest.CaptureFixture[str]) -> None:
+    assert command_line.run(["schema", "case"]) == 0
+
+    assert "rods" in json.loads(capsys.readouterr().out)["properties"]
+
+
+def test_compare_exits_with_0_if_everything_passed(
+    case_run: CaseRun, solved, capsys: pytest.CaptureFixture[str]
+) -> None:
+    solved(passing(case_run))
+
+    assert command_line.run(["compare", CASE]) == 0
+    assert "pass" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("verdict", ["fail", "not resolved"])
+def test_compare_exits_with_1_if_one_comparison_did_not_pass(
+    verdict: str, case_run: CaseRun, solved, capsys: pytest.CaptureFixture[str]
+) -> None:
+    first, *others = passing(case_run).comparisons
+    solved(replace(case_run, comparisons=(replace(first, verdict=verdict), *others)))
+
+    assert command_line.run(["compare", CASE]) == 1
+    assert verdict in capsys.readouterr().out
+
+
+def test_a_case_that_failed_is_shown_with_its_reason_beside_the_others(
+    case_run: CaseRun, solved, capsys: pytest.CaptureFixture[str]
+) -> None:
+    solved(Failure(case_run.case, "the mesh is singular"), passing(case_run))
+
+    assert command_line.run(["compare", CASE]) == 1
+    shown = capsys.readouterr().out
+    assert "the mesh is singular" in shown
+    assert "pass" in shown
+
+
+def test_report_refuses_a_file_as_its_folder_before_solving(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    file = tmp_path / "taken"
+    file.write_text("")
+
+    assert command_line.run(["report", CASE, "--output", str(file)]) == 2
+    assert capsys.readouterr().err.count("\n") == 1
+
+
+def test_an_interrupt_exits_with_130_and_no_traceback(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def interrupted(*_: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("reports.runner.run_rod", interrupted)
+
+    assert command_line.run(["solve", CASE, "--json"]) == 130
+    shown = capsys.readouterr()
+    assert shown.out == ""
+    assert "Traceback" not in shown.err
+
+
+def test_the_command_itself_keeps_its_streams_apart() -> None:
+    call = "from reports.command_line import main; main()"
+
+    done = subprocess.run(
+        [sys.executable, "-c", call, "solve", "no-such-case", "--json"],
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+
+    assert done.returncode == 2
+    assert done.stdout == ""
+    assert done.stderr.count("\n") == 1
+
+
+def test_listing_cases_imports_no_solver_and_nothing_that_draws() -> None:
+    call = (
+        "import sys; from reports.command_line import run; run(['list']);"
+        "print(sorted({'rodmodel', 'reference3d', 'gmsh', 'pyvista', 'plotly'} & set(sys.modules)), file=sys.stderr)"
+    )
+
+    done = subprocess.run([sys.executable, "-c", call], capture_output=True, text=True, check=True)
+
+    assert done.stderr.strip() == "[]"
