@@ -2,24 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from cases.case import Check
-from reports.comparison import CURVES, Estimate, compare, edges_estimate, sequence_estimate
-from reports.truth import SOURCE, independent_values
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
-    from cases.case import Case
-    from cases.scene import Vector
-    from reports.comparison import Comparison, Extrapolate
-    from reports.quantities import Quantities
-    from reports.solution import Array, Model
-    from reports.truth import IndependentValues
+from cases.case import Case, Check
+from cases.scene import Vector
+from reports.comparison import CURVES, Comparison, Estimate, Extrapolate, compare, edges_estimate, sequence_estimate
+from reports.quantities import Quantities
+from reports.solution import Array, Model
+from reports.truth import SOURCE, IndependentValues, independent_values
 
 REFERENCE_SOURCE = "3D reference of this run, extrapolated from three meshes"
 

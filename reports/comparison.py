@@ -7,20 +7,15 @@ and both solvers converged; otherwise it is 'not resolved' (as in ASME V&V 20).
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal, NamedTuple
+from typing import Literal, NamedTuple
 
 import numpy as np
 
-from cases.case import QUANTITIES
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from cases.case import Check, Quantity
-    from cases.scene import Vector
-    from reports.solution import Array, Model
+from cases.case import QUANTITIES, Check, Quantity
+from cases.scene import Vector
+from reports.solution import Array, Model
 
 Verdict = Literal["pass", "fail", "not resolved"]
 Kind = Literal["reference", "3d converged", "published"]

@@ -2,12 +2,9 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
-if TYPE_CHECKING:
-    from reports.solution import Array
+from reports.solution import Array
 
 # Pressures below this part of the largest one of the pair count as no contact (round-off of a solver).
 PRESSURE_FLOOR = 1e-6

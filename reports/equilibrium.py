@@ -3,15 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from cases.scene import End, Rod, Scene
 from reports.geometry import centre_line_points, frame, station_of
-
-if TYPE_CHECKING:
-    from cases.scene import End, Rod, Scene
-    from reports.solution import Array, Solution
+from reports.solution import Array, Solution
 
 
 @dataclass(frozen=True)

@@ -6,22 +6,18 @@ in line style, so that a black and white print stays readable.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Sequence
 
 import numpy as np
 import plotly.graph_objects as go
 from plotly.subplots import make_subplots
 
+from cases.scene import Rod
 from reports.geometry import AXES, frame
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from cases.scene import Rod
-    from reports.quantities import ContactQuantities, PressureProfile, RodQuantities
-    from reports.runner import CaseRun
-    from reports.solution import Array
-    from reports.truth import IndependentValues
+from reports.quantities import ContactQuantities, PressureProfile, RodQuantities
+from reports.runner import CaseRun
+from reports.solution import Array
+from reports.truth import IndependentValues
 
 ROD, REFERENCE, TRUTH, PUBLISHED = "#0072B2", "#D55E00", "#1F2933", "#007A5A"
 GRID, INK = "#E3E8EE", "#1F2933"

@@ -2,17 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Sequence
 
-from cases.case import QUANTITIES
+from cases.case import QUANTITIES, Quantity
+from reports.comparison import Comparison, Kind
 from reports.quantities import DEFINITIONS
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from cases.case import Quantity
-    from reports.comparison import Comparison, Kind
-    from reports.solution import Model
+from reports.solution import Model
 
 MODEL_NAMES: dict[Model, str] = {"rod": "rod model", "reference": "3D"}
 KIND_NAMES: dict[Kind, str] = {

@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
-if TYPE_CHECKING:
-    from cases.scene import ContactPair, Rod, Scene
-    from reports.solution import Array
+from cases.scene import ContactPair, Rod, Scene
+from reports.solution import Array
 
 # Names of the global axes.
 AXES = ("X", "Y", "Z")

@@ -8,17 +8,15 @@ from __future__ import annotations
 
 import io
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import pyvista
 
+from cases.scene import Rod, Scene
 from reports.geometry import centre_line_points, frame
-
-if TYPE_CHECKING:
-    from cases.scene import Rod, Scene
-    from reports.quantities import Quantities, RodQuantities
-    from reports.solution import Array
+from reports.quantities import Quantities, RodQuantities
+from reports.solution import Array
 
 # The largest displacement is drawn about this long, as a part of the scene's extent.
 DRAWN_DISPLACEMENT = 0.08

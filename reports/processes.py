@@ -5,14 +5,15 @@ from __future__ import annotations
 import multiprocessing
 import signal
 import traceback
+from collections.abc import Callable
+from multiprocessing.connection import Connection
 from pathlib import Path
-from typing import TYPE_CHECKING, TypeVar
+from typing import TypeVar
 
-if TYPE_CHECKING:
-    from collections.abc import Callable
-    from multiprocessing.connection import Connection
+from cases.scene import SceneError
+from reports.quantities import SolutionError
 
-    Progress = Callable[[str], None]
+Progress = Callable[[str], None]
 
 Given = TypeVar("Given")
 Found = TypeVar("Found")
@@ -72,9 +73,6 @@ def _worker(work: Callable[[Given, Progress], Found], given: Given, sender: Conn
 
 def failure_reason(error: BaseException) -> str:
     """An exception in one line: what it says and, for one nobody meant to raise, where it came from."""
-    from cases.scene import SceneError
-    from reports.quantities import SolutionError
-
     text = " ".join(str(error).split())
     if isinstance(error, SceneError | SolutionError):
         return text

@@ -2,19 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Sequence
+from contextlib import AbstractContextManager
 
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 
-from reports.runner import STEPS, run_cases
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-    from contextlib import AbstractContextManager
-
-    from cases.case import Case
-    from reports.runner import CaseRun, Failure
+from cases.case import Case
+from reports.runner import STEPS, CaseRun, Failure, run_cases
 
 
 def status(text: str) -> AbstractContextManager[object]:

@@ -6,20 +6,16 @@ gives every quantity its unit and its definition in words; the page and the JSON
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from cases.scene import ContactPair, End, Rod, Scene, Vector
 from reports.contact_edges import contact_stretches, edge_resolution
 from reports.equilibrium import equilibrium_residual, equilibrium_resultants
 from reports.geometry import centre_line_points, contact_limits, pair_axis
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
-    from cases.scene import ContactPair, End, Rod, Scene, Vector
-    from reports.solution import Array, ContactProfile, Solution
+from reports.solution import Array, ContactProfile, Solution
 
 
 class SolutionError(Exception):

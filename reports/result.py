@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from reports.quantities import DEFINITIONS
-
-if TYPE_CHECKING:
-    from reports.quantities import ContactQuantities, Quantities, RodQuantities
-    from reports.solution import Model
+from reports.quantities import DEFINITIONS, ContactQuantities, Quantities, RodQuantities
+from reports.solution import Model
 
 Triple = Annotated[list[float], Field(min_length=3, max_length=3)]
 Stretch = Annotated[list[float], Field(min_length=2, max_length=2)]

@@ -10,24 +10,16 @@ import resource
 import statistics
 import sys
 import time
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import TYPE_CHECKING
 
+from cases.case import Case
 from reports.case_comparison import case_comparisons, evaluation_points
-from reports.comparison import Extrapolation
-from reports.processes import ProcessFailed, in_own_process
-from reports.quantities import evaluate
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Sequence
-
-    from cases.case import Case
-    from reports.comparison import Comparison
-    from reports.processes import Progress
-    from reports.quantities import Quantities
-    from reports.solution import Model
-
+from reports.comparison import Comparison, Extrapolation
+from reports.processes import ProcessFailed, Progress, in_own_process
+from reports.quantities import Quantities, evaluate
+from reports.solution import Model
 
 # The rod model answers in milliseconds; its seconds are the median of this many runs.
 ROD_REPEATS = 5

@@ -10,36 +10,30 @@ import base64
 import json
 import math
 from collections import Counter
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from datetime import UTC, datetime
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+import plotly.graph_objects as go
 from jinja2 import Environment, FileSystemLoader, StrictUndefined, select_autoescape
 from markupsafe import Markup
 from plotly.offline import get_plotlyjs
 
 from cases.case import QUANTITIES
+from reports.comparison import Comparison, Verdict
 from reports.figures import deflection_figure, moment_figure, pressure_figure
 from reports.formatting import KIND_NAMES, MODEL_NAMES, measure, number, seconds, stretches, title, values
-from reports.processes import ProcessFailed, in_own_process
+from reports.processes import ProcessFailed, Progress, in_own_process
 from reports.quantities import DEFINITIONS
 from reports.result import result
-from reports.runner import ROD_REPEATS, CaseRun, Failure
+from reports.runner import ROD_REPEATS, CaseRun, Failure, Run
 from reports.sketch import scene_sketch
 from reports.store import write_whole
 from reports.truth import independent_values
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
-    import plotly.graph_objects as go
-
-    from reports.comparison import Comparison, Verdict
-    from reports.processes import Progress
-    from reports.runner import Run
 
 HERE = Path(__file__).parent
 

@@ -2,16 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 from markupsafe import Markup, escape
 
+from cases.scene import Rod, Scene
 from reports.geometry import AXES, centre_line_points, frame
-
-if TYPE_CHECKING:
-    from cases.scene import Rod, Scene
-    from reports.solution import Array
+from reports.solution import Array
 
 MARGIN = 46.0
 

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from cases.case import QUANTITIES
+from cases.case import QUANTITIES, Case
+from reports.comparison import Verdict
 from reports.formatting import (
     KIND_NAMES,
     MODEL_NAMES,
@@ -19,12 +18,7 @@ from reports.formatting import (
     title,
     values,
 )
-from reports.runner import Failure
-
-if TYPE_CHECKING:
-    from cases.case import Case
-    from reports.comparison import Verdict
-    from reports.runner import CaseRun, Run
+from reports.runner import CaseRun, Failure, Run
 
 # Tables are never narrower than this, also where the output is a file.
 WIDTH = 150

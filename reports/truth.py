@@ -3,21 +3,18 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 
+from cases.scene import Rod, Scene
 from reports.comparison import Estimate
 from reports.geometry import station_of
 from reports.quantities import PressureProfile
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-    from pathlib import Path
-
-    from cases.scene import Rod, Scene
-    from reports.solution import Array
+from reports.solution import Array
 
 SOURCE = "3D, made outside this project"
 

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import pytest
@@ -12,6 +13,7 @@ from cases.loader import load_case
 from cases.scene import (
     Clamp,
     ContactPair,
+    End,
     Line,
     Material,
     Rectangle,
@@ -24,12 +26,7 @@ from reports.case_comparison import case_comparisons, evaluation_points
 from reports.comparison import Extrapolation
 from reports.quantities import evaluate
 from reports.runner import CaseRun, Run
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from cases.scene import End
-    from reports.solution import Array, Model
+from reports.solution import Array, Model
 
 LENGTH = 300.0
 SIDE = 15.0

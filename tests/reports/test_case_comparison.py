@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 import pytest
 
@@ -11,10 +9,8 @@ from cases.case import Check
 from cases.loader import library_names, load_case
 from reports.case_comparison import evaluation_points, extract
 from reports.quantities import DEFINITIONS
+from reports.runner import CaseRun
 from reports.truth import independent_values
-
-if TYPE_CHECKING:
-    from reports.runner import CaseRun
 
 
 def test_every_check_of_the_case_is_made_against_the_3d_reference(case_run: CaseRun) -> None:

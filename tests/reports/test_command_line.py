@@ -5,21 +5,16 @@ from __future__ import annotations
 import json
 import subprocess
 import sys
+from collections.abc import Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 import jsonschema
 import pytest
 
 from cases.loader import library_names
 from reports import command_line
-from reports.runner import Failure
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-    from pathlib import Path
-
-    from reports.runner import CaseRun
+from reports.runner import CaseRun, Failure
 
 CASE = "two-cantilevers-e50-g0"
 

@@ -5,17 +5,14 @@ from __future__ import annotations
 import importlib
 import sys
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from pathlib import Path
+from types import ModuleType
 
 import pytest
 
 from cases.loader import load_case
 from reports.processes import ProcessFailed, in_own_process
 from reports.runner import Failure, run_cases
-
-if TYPE_CHECKING:
-    from pathlib import Path
-    from types import ModuleType
 
 WORK = """
 import os

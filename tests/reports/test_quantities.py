@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
@@ -11,11 +11,7 @@ import pytest
 from cases.scene import Clamp, Line, Material, Rectangle, Rod, Scene, SectionForce
 from reports.equilibrium import equilibrium_residual, equilibrium_resultants
 from reports.quantities import DEFINITIONS, default_stations, evaluate, stress_residual, stress_s
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from reports.solution import Array, Solution
+from reports.solution import Array, Solution
 
 ROUND_OFF = 1e-9
 

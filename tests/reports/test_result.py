@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Callable
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import jsonschema
 import numpy as np
@@ -12,12 +12,8 @@ import pytest
 
 from reports.quantities import SolutionError, evaluate
 from reports.result import Result, result
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from reports.runner import CaseRun
-    from reports.solution import Solution
+from reports.runner import CaseRun
+from reports.solution import Solution
 
 
 @pytest.fixture

@@ -6,18 +6,13 @@ import json
 import re
 from dataclasses import replace
 from html.parser import HTMLParser
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 import pytest
 
 from reports import site
 from reports.processes import ProcessFailed
-from reports.runner import Failure
-
-if TYPE_CHECKING:
-    from pathlib import Path
-
-    from reports.runner import CaseRun
+from reports.runner import CaseRun, Failure
 
 PICTURE = site.DrawnPicture("iVBORw0KGgo=", 1800, 700, "10", "")
 
