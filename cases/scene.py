@@ -60,7 +60,7 @@ def _require_positive(value: float, key: str, what: str) -> None:
 
 def _require_finite(vector: Vector, key: str) -> None:
     ok = len(vector) == 3 and bool(np.all(np.isfinite(vector)))
-    _require(ok, key, vector, "three finite numbers are needed")
+    _require(ok, key, list(vector), "three finite numbers are needed")
 
 
 @dataclass(frozen=True)
@@ -117,10 +117,10 @@ class Line:
     def __post_init__(self) -> None:
         for key, vector in (("start", self.start), ("end", self.end), ("up", self.up)):
             _require_finite(vector, key)
-        _require(self.length > 0.0, "end", self.end, "the end must differ from the start")
+        _require(self.length > 0.0, "end", list(self.end), "the end must differ from the start")
         normal_part = np.cross(np.subtract(self.end, self.start), self.up)
         ok = float(np.linalg.norm(normal_part)) > 1e-9 * self.length * float(np.linalg.norm(self.up))
-        _require(ok, "up", self.up, "give a direction that is not along the line")
+        _require(ok, "up", list(self.up), "give a direction that is not along the line")
 
     @property
     def length(self) -> float:

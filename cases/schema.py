@@ -50,6 +50,8 @@ Number = Annotated[float, BeforeValidator(_plain_number), WithJsonSchema({"type"
 Tolerance = Annotated[str, BeforeValidator(_tolerance), WithJsonSchema({"type": "string", "pattern": QUANTITY_PATTERN})]
 Name = Annotated[str, Field(strict=True, pattern=r"^[A-Za-z0-9_][A-Za-z0-9_ .-]*$")]
 Text = Annotated[StrictStr, Field(min_length=1)]
+# For tables that the author names: no other names than `Name` allows.
+_ONLY_NAMES = Field(json_schema_extra={"additionalProperties": False})
 # The unit of a published value follows from its quantity, so the loader converts it.
 Value = Annotated[
     Any, WithJsonSchema({"anyOf": [*_FORMS, {"type": "array", "items": {"anyOf": _FORMS}, "minItems": 1}]})
@@ -214,17 +216,17 @@ class CaseFile(_Table):
     """A paragraph about the case."""
     independent: Text | None = None
     """Name of a file in cases/truth with 3D values made outside this project."""
-    materials: dict[Name, MaterialTable]
+    materials: Annotated[dict[Name, MaterialTable], _ONLY_NAMES]
     """The materials, one table [materials.NAME] each."""
-    sections: dict[Name, SectionTable]
+    sections: Annotated[dict[Name, SectionTable], _ONLY_NAMES]
     """The cross-sections, one table [sections.NAME] each."""
-    rods: dict[Name, RodTable]
+    rods: Annotated[dict[Name, RodTable], _ONLY_NAMES]
     """The rods, one table [rods.NAME] each."""
     supports: tuple[SupportTable, ...]
     """The supports, one [[supports]] each."""
     loads: tuple[LoadTable, ...] = ()
     """The loads, one [[loads]] each."""
-    contacts: dict[Name, ContactTable] = {}
+    contacts: Annotated[dict[Name, ContactTable], _ONLY_NAMES] = {}
     """The contact pairs, one table [contacts.NAME] each."""
     rod_model: RodModelTable
     """Settings of the rod model."""

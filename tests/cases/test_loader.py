@@ -156,14 +156,14 @@ MISTAKES = [
         "rod without length",
         [("end = [300, 0, 0]", "end = [0, 0, 0]")],
         "rods.lower.centre_line.end",
-        "(0.0, 0.0, 0.0)",
+        "[0.0, 0.0, 0.0]",
         "must differ",
     ),
     (
         "up along the rod",
         [("up = [0, 1, 0]", "up = [1, 0, 0]")],
         "rods.lower.centre_line.up",
-        "(1.0, 0.0, 0.0)",
+        "[1.0, 0.0, 0.0]",
         "not along the line",
     ),
     (

@@ -28,6 +28,7 @@ def test_every_library_file_fits_the_schema(name):
         ("rod_model", "level", 13),
         ("rod_model", "level", 5.5),
         ("rod_model", "levle", 5),
+        ("rods", "<b>", {}),
         ("materials", "steel", {"young_modulus": "200 GPa"}),
     ],
 )
