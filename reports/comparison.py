@@ -195,15 +195,15 @@ def edges_estimate(values: Sequence[Array], resolution: float) -> Estimate:
 
     Notes
     -----
-    An edge follows the mesh in steps and not as a power of its size, so that no order can be observed. The
-    value is that of the finest mesh; the uncertainty is the largest change between meshes and half the
-    resolution.
+    An edge follows the mesh in steps of its stations and not as a power of their distance, so that no order can be
+    observed. The value is that of the finest mesh. It is known no better than the interval of stations it lies in
+    there, nor than it moves with the mesh: the uncertainty is the larger of the two.
     """
     coarse, medium, fine = values
     if not coarse.shape == medium.shape == fine.shape:
         return Estimate(fine, None)
     change = np.abs([fine - medium, fine - coarse, medium - coarse]).max(initial=0.0)
-    return Estimate(fine, float(change) + 0.5 * resolution)
+    return Estimate(fine, max(float(change), resolution))
 
 
 def sequence_estimate(values: Sequence[Array], extrapolate: Extrapolate, *, curve: bool) -> Estimate:

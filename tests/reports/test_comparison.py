@@ -130,13 +130,14 @@ def test_meshes_that_disagree_on_the_number_of_stretches_leave_the_reference_unr
     assert found.verdict == "not resolved"
 
 
-def test_edges_are_as_uncertain_as_they_move_with_the_mesh_and_the_stations_are_apart() -> None:
+@pytest.mark.parametrize(("resolution", "uncertainty"), [(0.8, 0.8), (0.1, 0.4)])
+def test_edges_are_as_uncertain_as_stations_are_apart_or_meshes_disagree(resolution: float, uncertainty: float) -> None:
     meshes = [np.array([200.0, 221.2]), np.array([200.0, 221.3]), np.array([200.0, 221.6])]
 
-    estimate = edges_estimate(meshes, resolution=0.8)
+    estimate = edges_estimate(meshes, resolution)
 
     assert estimate.value == pytest.approx([200.0, 221.6])
-    assert estimate.uncertainty == pytest.approx(0.4 + 0.4)
+    assert estimate.uncertainty == pytest.approx(uncertainty)
 
 
 def test_edges_whose_number_depends_on_the_mesh_are_unresolved() -> None:
