@@ -19,7 +19,7 @@ from cases.scene import (
     SectionForce,
 )
 from rodmodel.solution import ContactPoints, Cost, Solution
-from rodmodel.solve import solve
+from rodmodel.solver import solve
 
 __all__ = [
     "Clamp",

@@ -136,5 +136,7 @@ def placed_borders(
             borders.base[anchor] if edge < 0 else stations[edge]
             for anchor, edge in zip(anchors, borders.edges, strict=True)
         ]
-        placed[rod.name] = np.interp(borders.base, borders.base[anchors], new)
+        # An edge that has crossed a held border has changed places with it.
+        moved = np.interp(borders.base, borders.base[anchors], np.sort(new))
+        placed[rod.name] = moved[np.concatenate([[True], np.diff(moved) > SAME_BORDER])]
     return placed

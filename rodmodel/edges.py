@@ -20,13 +20,15 @@ from rodmodel.contact import forces_on
 from rodmodel.system import ContactSystem
 
 Array = NDArray[np.float64]
+BoolArray = NDArray[np.bool_]
 
 # An edge counts as found when the next step would move it by less than this, mm.
 EDGE_TOLERANCE = 0.01
 MOST_STEPS = 12
 # First step of the search and longest step, as parts of the zone.
 FIRST_STEP, LONGEST_STEP = 0.01, 0.1
-# An edge that comes closer than this part of the zone to the zone's end or to the stretch's other end is gone.
+# Shortest stretch as a part of the zone: contact that wants less is contact at a corner or a point, and its edges are
+# known to that length. An edge as close to the zone's end is on it.
 SHORTEST = 2e-3
 
 
@@ -111,7 +113,7 @@ class EdgeSearch:
 
     Attributes
     ----------
-    outcome : 'converged', 'stagnated', or 'topology': an edge ran into the zone's end or into another
+    outcome : 'converged', 'stagnated', or 'topology': an edge ran into the zone's end or into another stretch
     positions : last position of every edge, mm along its pair's first rod, shape (n_edges,)
     steps : every position tried, shape (n_solutions, n_edges)
     system : contact system with the borders at `positions`
@@ -130,7 +132,10 @@ def find_edges(
     positions: Array,
     system_at: Callable[[Array], ContactSystem],
 ) -> EdgeSearch:
-    """Roots of the edge pressures in the edge positions, all at once, by Broyden's method (a secant for one edge).
+    """Roots of the edge pressures in the edge positions, all at once.
+
+    Each edge makes a first step alone, which gives its column of the Jacobian; from there on Broyden's method, which
+    for one edge is the secant method, kept between what its signs have shown.
 
     Parameters
     ----------
@@ -139,7 +144,7 @@ def find_edges(
     """
     outward = np.array([edge.outward for edge in edges])
     zones = np.array([scene.contact(edge.pair).zone for edge in edges])
-    size = zones[:, 1] - zones[:, 0]
+    longest = LONGEST_STEP * (zones[:, 1] - zones[:, 0])
     tried: list[Array] = []
 
     def residual(at: Array) -> tuple[Array, ContactSystem]:
@@ -147,28 +152,116 @@ def find_edges(
         system = system_at(at)
         return edge_pressures(system, moved(stretches, edges, at), edges), system
 
+    positions = _not_too_short(scene, stretches, edges, positions)
     value, system = residual(positions)
-    # Positive pressure at an edge: contact goes on beyond it.
-    step = outward * np.sign(value) * FIRST_STEP * size
-    jacobian: Array | None = None
+    jacobian = np.zeros((len(edges), len(edges)))
+    bracket = Bracket().tightened(outward[0] * positions[0], value[0])
     outcome = "stagnated"
     while len(tried) < MOST_STEPS:
-        new = positions + np.clip(step, -LONGEST_STEP * size, LONGEST_STEP * size)
+        retreat = _retreats(moved(stretches, edges, positions), edges)
+        first = len(tried) - 1
+        if first < len(edges):
+            # Positive pressure at an edge: contact goes on beyond it.
+            step = np.zeros(len(edges))
+            step[first] = FIRST_STEP / LONGEST_STEP * longest[first] * np.sign(value[first])
+        else:
+            step = outward * _newton_step(jacobian, value, _at_shortest(scene, stretches, edges, positions))
+        if len(edges) == 1:
+            step = bracket.safe(outward * positions, value, step, longest, retreat)
+        new = positions + outward * np.clip(step, -retreat, longest)
+        new = _not_too_short(scene, stretches, edges, new)
         if _out_of_place(scene, moved(stretches, edges, new)):
             outcome = "topology"
             break
-        new_value, system = residual(new)
-        change, difference = new - positions, new_value - value
-        if jacobian is None:
-            jacobian = np.diag(difference / change)
-        else:
-            jacobian = jacobian + np.outer(difference - jacobian @ change, change) / (change @ change)
-        positions, value = new, new_value
-        step = -np.linalg.solve(jacobian, value)
-        if np.abs(step).max() < EDGE_TOLERANCE:
+        change = new - positions
+        if np.abs(change).max() < EDGE_TOLERANCE and first >= len(edges):
             outcome = "converged"
             break
+        new_value, system = residual(new)
+        if change.any():
+            jacobian = jacobian + np.outer(new_value - value - jacobian @ change, change) / (change @ change)
+        positions, value = new, new_value
+        bracket = bracket.tightened(outward[0] * positions[0], value[0])
     return EdgeSearch(outcome, positions, np.array(tried), system)
+
+
+def _newton_step(jacobian: Array, value: Array, at_shortest: BoolArray) -> Array:
+    """-J^-1 value for the edges that are free to move: not those of a stretch that cannot shrink any further."""
+    free = ~(at_shortest & (value < 0.0))
+    step = np.zeros_like(value)
+    # Least squares: an edge that has not moved yet has an empty column and stays.
+    step[free] = -np.linalg.lstsq(jacobian[np.ix_(free, free)], value[free])[0]
+    return step
+
+
+@dataclass(frozen=True)
+class Bracket:
+    """What the signs seen so far say of a single edge, in a coordinate that grows out of contact.
+
+    The pressure at an edge need not fall steadily: on a stretch much too short the held elements pull like a clamp. So
+    a step is believed only where it goes the way that the sign asks for, and stays within what is known.
+
+    Attributes
+    ----------
+    inner, outer : last position with positive and first with negative pressure, mm
+    """
+
+    inner: float = -np.inf
+    outer: float = np.inf
+
+    def tightened(self, position: float, value: float) -> Bracket:
+        """The bracket with one more pressure known."""
+        return replace(self, inner=position) if value > 0.0 else replace(self, outer=position)
+
+    def safe(self, position: Array, value: Array, step: Array, longest: Array, retreat: Array) -> Array:
+        """The step where it can be believed, else to the middle of the bracket, else far the way the sign asks for.
+
+        longest, retreat : largest steps outward and inward, mm
+        """
+        target = position[0] + step[0]
+        if step[0] * value[0] >= 0.0 and self.inner <= target <= self.outer:
+            return step
+        if np.isfinite(self.outer - self.inner):
+            return np.array([0.5 * (self.inner + self.outer) - position[0]])
+        return longest if value[0] > 0.0 else -retreat
+
+
+def _retreats(stretches: Sequence[Stretch], edges: Sequence[Edge]) -> Array:
+    """How far each edge may go inward at once: a quarter of the stretch, all of it where the other end is held.
+
+    A stretch with one held end that wants to be shorter than it looks mostly wants to be a corner.
+    """
+    counts = [sum(other.stretch == edge.stretch for other in edges) for edge in edges]
+    lengths = [stretches[edge.stretch].end - stretches[edge.stretch].start for edge in edges]
+    return np.array([length * (1.0 if count == 1 else 0.25) for length, count in zip(lengths, counts, strict=True)])
+
+
+def _at_shortest(scene: Scene, stretches: Sequence[Stretch], edges: Sequence[Edge], positions: Array) -> BoolArray:
+    """Edges of stretches that have the shortest length."""
+    current = moved(stretches, edges, positions)
+    shortest = [_shortest(scene, stretch) for stretch in current]
+    return np.array(
+        [
+            current[edge.stretch].end - current[edge.stretch].start < (1.0 + 1e-6) * shortest[edge.stretch]
+            for edge in edges
+        ]
+    )
+
+
+def _shortest(scene: Scene, stretch: Stretch) -> float:
+    low, high = scene.contact(stretch.pair).zone
+    return SHORTEST * (high - low)
+
+
+def _not_too_short(scene: Scene, stretches: Sequence[Stretch], edges: Sequence[Edge], positions: Array) -> Array:
+    """Positions with stretches of the shortest length at least: from the end that is held, else about the middle."""
+    result = positions.copy()
+    for number, stretch in enumerate(moved(stretches, edges, positions)):
+        missing = _shortest(scene, stretch) - (stretch.end - stretch.start)
+        mine = [index for index, edge in enumerate(edges) if edge.stretch == number]
+        for index in mine if missing > 0.0 else []:
+            result[index] += edges[index].outward * missing / len(mine)
+    return result
 
 
 def same_topology(some: Sequence[Stretch], others: Sequence[Stretch]) -> bool:
@@ -179,12 +272,12 @@ def same_topology(some: Sequence[Stretch], others: Sequence[Stretch]) -> bool:
 
 
 def _out_of_place(scene: Scene, stretches: Sequence[Stretch]) -> bool:
-    """Whether a stretch has vanished, left its zone or run into the next one."""
+    """Whether a stretch has left its zone, come next to the zone's end or run into the next stretch."""
     for stretch in stretches:
         low, high = scene.contact(stretch.pair).zone
-        margin = SHORTEST * (high - low)
+        margin = _shortest(scene, stretch)
         inside = low <= stretch.start and stretch.end <= high
         near = low < stretch.start < low + margin or high - margin < stretch.end < high
-        if not inside or near or stretch.end - stretch.start < margin:
+        if not inside or near:
             return True
     return any(a.pair == b.pair and a.end >= b.start for a, b in pairwise(stretches))

@@ -1,12 +1,14 @@
 """Search for the edges of contact."""
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
+import rodmodel as rm
 from cases.loader import load_case
-from cases.scene import Scene
+from cases.scene import Material, Scene, SectionForce
 from rodmodel.assembly import ElementStore
 from rodmodel.borders import border_plan, natural_borders, placed_borders
 from rodmodel.contact import forces_on, unilateral_contact
@@ -118,3 +120,26 @@ def test_ripples_inside_an_element_are_not_stretches() -> None:
     closed_runs = np.count_nonzero(np.diff(np.concatenate([[0], closed.astype(int)])) == 1)
     assert closed_runs > 1  # the mesh does show openings
     assert len(stretches_in_contact(system, force)) == 1
+
+
+def test_contact_at_a_corner_ends_with_the_shortest_stretch() -> None:
+    """A stiff upper bar digs its end into the lower one: held elements pull, however short the stretch."""
+    case = load_case("two-cantilevers-e50-g0")
+    stiff = replace(case.scene.rods[1], material=Material(2e6, 0.3))
+    solution = rm.solve(replace(case.scene, rods=(case.scene.rods[0], stiff)), level=LEVEL, order=ORDER)
+    assert solution.outcome == "converged"
+    (stretch,) = solution.stretches
+    assert stretch.start == 200.0
+    assert stretch.end == pytest.approx(200.2)  # SHORTEST of the zone's 100 mm
+
+
+def test_an_edge_that_crosses_a_load_is_found() -> None:
+    """A load inside the zone holds a border of its own; the edges' borders pass it by."""
+    case = load_case("two-cantilevers-e20-g0")
+    loads = (*case.scene.loads, SectionForce("upper", 36.0, (0.0, 1.0, 0.0)))
+    solution = rm.solve(replace(case.scene, loads=loads), level=LEVEL, order=ORDER)
+    assert solution.outcome == "converged"
+    (without,) = rm.solve(case.scene, level=LEVEL, order=ORDER).stretches
+    (stretch,) = solution.stretches
+    # 1 N among 1000 moves nothing; the extra border changes the mesh, and an edge by what order 5 leaves open
+    assert (stretch.start, stretch.end) == pytest.approx((without.start, without.end), abs=1.5)
