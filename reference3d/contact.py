@@ -156,6 +156,44 @@ def solve_complementarity(matrix: Array, offset: Array, active: NDArray[np.bool_
     return Complementarity(np.maximum(force, 0.0), "cycling", limit)
 
 
+def solve_nested(matrix: Array, offset: Array, shapes: list[tuple[int, int]], coarsest: int = 12) -> Complementarity:
+    """The complementarity problem of whole grids of contact nodes, first on every 2^j-th station along s.
+
+    Each coarser answer tells the finer one which nodes touch, so that few active sets of many nodes are tried.
+
+    Parameters
+    ----------
+    shapes : (n_s, n_lateral) of the grid of each pair, in the order of the unknowns
+    coarsest : stations of the longest grid to begin with, about
+    """
+    longest = max(stations for stations, _ in shapes)
+    stride = 2 ** max(0, int(np.log2(longest / coarsest)))
+    number = np.arange(len(offset))
+    grids = [
+        part.reshape(shape)
+        for part, shape in zip(
+            np.split(number, np.cumsum([stations * across for stations, across in shapes])[:-1]),
+            shapes,
+            strict=True,
+        )
+    ]
+    touching, steps = offset < 0.0, 0
+    while True:
+        nodes = np.concatenate([grid[::stride].ravel() for grid in grids])
+        answer = solve_complementarity(matrix[np.ix_(nodes, nodes)], offset[nodes], touching[nodes])
+        steps += answer.steps
+        if stride == 1:
+            return Complementarity(answer.force, answer.outcome, steps)
+        force = np.zeros(len(offset))
+        force[nodes] = answer.force
+        stride //= 2
+        # a new station takes over what the coarser one before it says
+        for grid in grids:
+            coarse = force[grid[:: 2 * stride]] > 0.0
+            fine = grid[::stride]
+            touching[fine] = np.repeat(coarse, 2, axis=0)[: len(fine)]
+
+
 def near_contact(station: Array, touched: Array, margin: float) -> NDArray[np.bool_]:
     """Which stations lie within a margin of one that is touched, shape (n,); all in mm."""
     distance = np.abs(station[:, None] - touched).min(axis=1, initial=np.inf)

@@ -28,6 +28,8 @@ ZONE_END_CELL = 0.15
 ZONE_CELL = 1.0 / 3.0
 LARGEST_CELL = 1.2
 SECTION_CELL = 0.5
+# a broad side is not divided into more coarse cells than this
+MOST_ACROSS = 6
 GROWTH = 0.5  # increase of the cell length per distance
 # elements get finer towards the border of the section, where clamps make the stress singular: the fraction by
 # which their size there is below the mean (in the limit of many)
@@ -88,8 +90,8 @@ def rod_borders(scene: Scene, rod: Rod, refinement: int, symmetric: bool) -> Bor
             zones.append(_Zone(*rectangle[0], ZONE_CELL * smaller))
             across["x" if face.face in ("top", "bottom") else "y"] += rectangle[1]
     return Borders(
-        x=_across(rod.section.width, across["x"], SECTION_CELL * side, refinement, symmetric),
-        y=_across(rod.section.height, across["y"], SECTION_CELL * side, refinement, False),
+        x=_across(rod.section.width, across["x"], side, refinement, symmetric),
+        y=_across(rod.section.height, across["y"], side, refinement, False),
         s=_along(breaks, zones, LARGEST_CELL * side, refinement),
     )
 
@@ -122,8 +124,9 @@ def _divide(borders: Array, parts: int) -> Array:
     return np.asarray(np.interp(at, np.arange(len(borders)), borders))
 
 
-def _across(extent: float, inner: list[float], size: float, refinement: int, half: bool) -> Array:
+def _across(extent: float, inner: list[float], side: float, refinement: int, half: bool) -> Array:
     """Borders over a width or height, one of them in the middle and one at each border of contact."""
+    size = max(SECTION_CELL * side, extent / MOST_ACROSS)
     candidates = sorted([-0.5 * extent, 0.0, 0.5 * extent, *inner])
     places = [candidates[0]]
     for place in candidates[1:]:

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from scipy.sparse import csc_array, hstack
 
 from cases.scene import ContactPair, End, Rod, Scene, SceneError
-from reference3d.contact import ContactNodes, contact_nodes, near_contact, solve_complementarity
+from reference3d.contact import ContactNodes, contact_nodes, near_contact, solve_complementarity, solve_nested
 from reference3d.elasticity import LayeredStiffness, layered_stiffness
 from reference3d.factor import LayeredFactor, compliance, factorise
 from reference3d.factor import solve as solve_layers
@@ -31,6 +31,8 @@ IntArray = NDArray[np.int64]
 DEFAULT_REFINEMENT = 2
 # contact is looked for where the coarse mesh found it and this many section sides around
 MARGIN = 0.5
+# closer to incompressible, displacement elements lock and the stiffness loses its last digits
+LARGEST_POISSON_RATIO = 0.4999
 # largest force left over, relative to the largest internal force, that a solution may have
 RESIDUAL_TOLERANCE = 1e-8
 
@@ -216,14 +218,15 @@ def solve(scene: Scene, refinement: int = DEFAULT_REFINEMENT, located: Solution 
     Raises
     ------
     SceneError
-        if the scene is outside what this solver treats: a rod without a clamp, rods in contact that are not
-        parallel, faces of a pair that are not.
+        if the scene is outside what this solver treats: a rod without a clamp, a Poisson's ratio next to
+        0.5, rods in contact that are not parallel, faces of a pair that are not.
     ValueError
         if `refinement` is below 1.
     """
     if refinement < 1:
         raise ValueError(f"refinement: found {refinement}; a whole number of at least 1 is needed")
     _require_support(scene)
+    _require_compressible(scene)
     begin = time.perf_counter()
     symmetric = is_symmetric(scene)
     # contact is located on the coarsest mesh, so that compliance is computed only where it is needed
@@ -256,6 +259,14 @@ def _require_support(scene: Scene) -> None:
             raise SceneError(
                 "supports", found, "the 3D reference needs a clamp on every rod, or its stiffness is singular"
             )
+
+
+def _require_compressible(scene: Scene) -> None:
+    for rod in scene.rods:
+        ratio = rod.material.poisson_ratio
+        if ratio > LARGEST_POISSON_RATIO:
+            remedy = f"the displacements of the 3D reference need at most {LARGEST_POISSON_RATIO:g}"
+            raise SceneError(f"rods.{rod.name}.material.poisson_ratio", f"{ratio:.10g}", remedy)
 
 
 def _body(scene: Scene, rod: Rod, refinement: int, symmetric: bool) -> _Body:
@@ -352,7 +363,10 @@ def _contact_forces(
         place = np.concatenate(places)
         matrix[np.ix_(place, place)] += work[:-1, :-1]
         offset[place] += work[:-1, -1]
-    answer = solve_complementarity(matrix, offset, offset < 0.0)
+    if all(chosen.all() for chosen in candidates):
+        answer = solve_nested(matrix, offset, [grid.area.shape for grid in nodes])
+    else:
+        answer = solve_complementarity(matrix, offset, offset < 0.0)
     for index, chosen in enumerate(candidates):
         forces[index][chosen] = answer.force[starts[index] : starts[index + 1]]
     return forces, answer.outcome, answer.steps
