@@ -14,7 +14,7 @@ from reports.quantities import Quantities
 from reports.solution import Array, Model
 from reports.truth import SOURCE, IndependentValues, independent_values
 
-REFERENCE_SOURCE = "3D reference of this run, extrapolated from three meshes"
+REFERENCE_SOURCE = "the 3D reference of this run, extrapolated from three meshes where they converge"
 
 
 @dataclass(frozen=True)

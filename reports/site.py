@@ -26,7 +26,7 @@ from plotly.offline import get_plotlyjs
 from cases.case import QUANTITIES
 from reports.comparison import Comparison, Verdict
 from reports.figures import deflection_figure, moment_figure, pressure_figure
-from reports.formatting import KIND_NAMES, MODEL_NAMES, measure, number, seconds, stretches, title, values
+from reports.formatting import MODEL_NAMES, measure, number, seconds, stretches, title, values
 from reports.processes import ProcessFailed, Progress, in_own_process
 from reports.quantities import DEFINITIONS
 from reports.result import result
@@ -295,7 +295,7 @@ def _check_groups(comparisons: Sequence[Comparison]) -> list[dict[str, Any]]:
         rows = [
             _row(found) for found in comparisons if (found.model, found.kind, found.source) == (model, kind, source)
         ]
-        groups.append({"title": f"{name} against {KIND_NAMES[kind]}: {source}", "rows": rows})
+        groups.append({"title": f"{name} against {source}", "rows": rows})
     return groups
 
 

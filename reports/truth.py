@@ -16,7 +16,7 @@ from reports.geometry import station_of
 from reports.quantities import PressureProfile
 from reports.solution import Array
 
-SOURCE = "3D, made outside this project"
+SOURCE = "3D values made outside this project"
 
 
 @dataclass(frozen=True)
