@@ -9,6 +9,7 @@ from __future__ import annotations
 from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, StrictInt, StrictStr, WithJsonSchema
+from typing_extensions import TypeAliasType
 
 from cases.case import Quantity
 from cases.scene import End, Face
@@ -42,10 +43,11 @@ def _tolerance(value: object) -> str:
     raise UnitError('write a tolerance with its unit, relative as in "0.1 %" or absolute as in "1 mm"')
 
 
-Length = Annotated[float, *_with_unit("mm")]
-Force = Annotated[float, *_with_unit("N")]
-Stress = Annotated[float, *_with_unit("MPa")]
-PenaltyUnit = Annotated[float, *_with_unit("N/mm^3")]
+# Named types are written once in the JSON Schema, and referred to.
+Length = TypeAliasType("Length", Annotated[float, *_with_unit("mm")])
+Force = TypeAliasType("Force", Annotated[float, *_with_unit("N")])
+Stress = TypeAliasType("Stress", Annotated[float, *_with_unit("MPa")])
+StressPerLength = TypeAliasType("StressPerLength", Annotated[float, *_with_unit("N/mm^3")])
 Number = Annotated[float, BeforeValidator(_plain_number), WithJsonSchema({"type": "number"})]
 Tolerance = Annotated[str, BeforeValidator(_tolerance), WithJsonSchema({"type": "string", "pattern": QUANTITY_PATTERN})]
 Name = Annotated[str, Field(strict=True, pattern=r"^[A-Za-z0-9_][A-Za-z0-9_ .-]*$")]
@@ -154,9 +156,9 @@ class ContactTable(_Table):
     """The second face, such as { rod = "upper", face = "bottom" }."""
     zone: tuple[Length, Length]
     """Where the faces may touch: two rising lengths [from, to] along the first rod from its start."""
-    gap: Annotated[Length, Field(ge=0.0)]
+    gap: Annotated[float, *_with_unit("mm"), Field(ge=0.0)]
     """Distance of the faces before loading, a length, not negative; it counts as given, whatever is drawn."""
-    penalty: PenaltyUnit
+    penalty: StressPerLength
     """Pressure per penetration, a stress per length, such as "1e6 N/mm^3"; positive."""
 
 
