@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
+
 import numpy as np
 
 from cases.scene import ContactPair, Rod, Scene
@@ -11,14 +13,17 @@ from reports.solution import Array
 AXES = ("X", "Y", "Z")
 
 
+@lru_cache
 def frame(rod: Rod) -> Array:
-    """Rows e1, e2, t of the rod's local frame in global components, shape (3, 3) (`cases.scene`)."""
+    """Rows e1, e2, t of the rod's local frame in global components, shape (3, 3), read-only (`cases.scene`)."""
     line = rod.centre_line
     tangent = np.subtract(line.end, line.start) / line.length
     up = np.asarray(line.up, dtype=float)
     second = up - (up @ tangent) * tangent
     second /= np.linalg.norm(second)
-    return np.array([np.cross(second, tangent), second, tangent])
+    axes = np.array([np.cross(second, tangent), second, tangent])
+    axes.setflags(write=False)  # every caller gets the same array
+    return axes
 
 
 def centre_line_points(rod: Rod, station: Array) -> Array:

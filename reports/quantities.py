@@ -13,7 +13,7 @@ import numpy as np
 
 from cases.scene import ContactPair, End, Rod, Scene, Vector
 from reports.contact_edges import contact_stretches, edge_resolution
-from reports.equilibrium import equilibrium_residual, equilibrium_resultants
+from reports.equilibrium import AppliedForces, applied_forces, equilibrium_residual, equilibrium_resultants
 from reports.geometry import centre_line_points, contact_limits, pair_axis
 from reports.solution import Array, ContactProfile, Solution
 
@@ -250,18 +250,20 @@ def evaluate(
     """
     scene = solution.scene
     extra = stations or {}
+    applied = {rod.name: applied_forces(solution, rod) for rod in scene.rods}
     quantities = Quantities(
         outcome=solution.outcome,
         contacts=tuple(contact_quantities(solution, pair) for pair in scene.contacts),
         rods=tuple(
-            rod_quantities(solution, rod, merged_stations(rod, extra.get(rod.name, np.empty(0)))) for rod in scene.rods
+            rod_quantities(solution, rod, applied[rod.name], merged_stations(rod, extra.get(rod.name, np.empty(0))))
+            for rod in scene.rods
         ),
         point_stresses={
             (rod, point): float(stress_s(solution, rod, np.array([point]).T)[0]) for rod, point in stress_points
         },
         reactions={(clamp.rod, clamp.end): solution.reaction(clamp.rod, clamp.end) for clamp in scene.supports},
         strain_energy=float(solution.strain_energy),
-        equilibrium_residual=equilibrium_residual(solution),
+        equilibrium_residual=equilibrium_residual(scene, applied),
         unknowns=solution.cost.unknowns,
         contact_solutions=solution.contact_solutions,
         setup_seconds=solution.cost.setup_seconds,
@@ -334,14 +336,15 @@ def _edges(
     return along, edge_resolution(profile.station, stretches, limits)
 
 
-def rod_quantities(solution: Solution, rod: Rod, station: Array) -> RodQuantities:
+def rod_quantities(solution: Solution, rod: Rod, applied: AppliedForces, station: Array) -> RodQuantities:
     """Deflection and resultants of one rod.
 
     Parameters
     ----------
+    applied : all forces on the rod
     station : arc length, mm, from 0 to the rod's length, shape (n,)
     """
-    equilibrium = equilibrium_resultants(solution, rod, station)
+    equilibrium = equilibrium_resultants(solution.scene, rod, applied, station)
     stress = solution.section_resultants(rod.name, station)
     clamped = [0 if clamp.end == "start" else -1 for clamp in solution.scene.supports if clamp.rod == rod.name]
     end_moment_equilibrium = end_moment_stress = max_bending_stress = None
