@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from functools import cache
 from importlib.resources import files
 
 import numpy as np
@@ -12,6 +13,7 @@ from cases.scene import Clamp, ContactPair, Line, Material, Rectangle, Rod, RodF
 from reference3d.elasticity import layered_stiffness
 from reference3d.grading import Borders
 from reference3d.mesh import box_mesh
+from reference3d.solution import solve
 
 SECTION = Rectangle(15.0, 15.0)
 
@@ -65,6 +67,12 @@ def make_cantilever(force, poisson_ratio=0.3, length=300.0, section=SECTION, up=
     rod = Rod("rod", line, section, Material(200000.0, poisson_ratio), (0.0, line.length))
     load = SectionForce("rod", line.length, force)
     return Scene("cantilever", (rod,), (Clamp("rod", "start"),), (load,), ())
+
+
+@cache
+def solve_paper_case(name, refinement=2):
+    """Solution of a paper case, computed once for all tests that read it."""
+    return solve(make_two_cantilevers(*PAPER_CASES[name]), refinement)
 
 
 def read_truth(name):
@@ -122,7 +130,17 @@ def graded_borders():
     )
 
 
+@pytest.fixture
+def paper_solution():
+    return solve_paper_case
+
+
 @pytest.fixture(params=PAPER_CASES)
 def paper_case(request):
-    """Name and scene of each of the paper's four cases."""
-    return request.param, make_two_cantilevers(*PAPER_CASES[request.param])
+    """Name of each of the paper's four cases."""
+    return request.param
+
+
+@pytest.fixture
+def paper_scene(paper_case):
+    return make_two_cantilevers(*PAPER_CASES[paper_case])

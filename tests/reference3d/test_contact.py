@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from scipy.optimize import nnls
 
 from cases.scene import Clamp, ContactPair, Line, Material, Rectangle, Rod, RodFace, Scene
-from reference3d.contact import contact_nodes, near_contact, solve_complementarity
+from reference3d.contact import contact_nodes, near_contact, solve_complementarity, solve_nested
 from reference3d.grading import Borders, rod_borders
 from reference3d.quadratic import line_nodes, nodal_weights
 
@@ -112,6 +112,20 @@ def _block_sets(matrix, offset, steps=8):
         w = offset + matrix @ force
         active = np.where(active, force >= 0.0, w < 0.0)
     return visited
+
+
+@pytest.mark.parametrize("shapes", [[(40, 1)], [(31, 3), (17, 2)], [(5, 4)]])
+def test_starting_on_every_other_station_changes_only_the_way(shapes):
+    size = sum(stations * across for stations, across in shapes)
+    random = np.random.default_rng(3)
+    factor = np.tril(random.normal(size=(size, size))) * 0.2 + np.eye(size)
+    matrix, offset = factor @ factor.T, random.normal(size=size)
+
+    nested = solve_nested(matrix, offset, shapes)
+    direct = solve_complementarity(matrix, offset, offset < 0.0)
+
+    assert nested.outcome == "converged"
+    np.testing.assert_allclose(nested.force, direct.force, atol=1e-12 * direct.force.max())
 
 
 def test_no_node_near_contact_if_none_touches():

@@ -95,9 +95,8 @@ def test_the_answer_does_not_depend_on_how_the_rod_lies_in_space(cantilever, end
     np.testing.assert_allclose(in_turned, in_reference, atol=1e-10 * np.abs(in_reference).max())
 
 
-def test_contact_forces_loads_and_reactions_are_in_equilibrium(paper_case):
-    _, scene = paper_case
-    solution = solve(scene, 1)
+def test_contact_forces_loads_and_reactions_are_in_equilibrium(paper_case, paper_solution):
+    solution = paper_solution(paper_case)
 
     contact = solution.contact_points("lower-upper")
     resultant = contact.normal @ contact.force
@@ -117,8 +116,8 @@ def test_contact_forces_loads_and_reactions_are_in_equilibrium(paper_case):
     assert solution.residual < 1e-10
 
 
-def test_moments_from_stress_and_from_equilibrium_agree(two_cantilevers):
-    solution = solve(two_cantilevers(50000.0, 0.0))
+def test_moments_from_stress_and_from_equilibrium_agree(paper_solution):
+    solution = paper_solution("e50_g0")
     contact = solution.contact_points("lower-upper")
     station = np.array([0.0, 3.0, 50.0, 100.0, 150.0])
     # about e1 = -Z: the contact force beyond the station presses the lower rod along -Y, top in tension
@@ -150,9 +149,8 @@ def test_the_symmetric_half_gives_the_full_solution(two_cantilevers, monkeypatch
     assert half.strain_energy == pytest.approx(full.strain_energy, rel=1e-10)
 
 
-def test_contact_conditions_hold_at_every_node(paper_case):
-    _, scene = paper_case
-    solution = solve(scene)
+def test_contact_conditions_hold_at_every_node(paper_case, paper_solution):
+    solution = paper_solution(paper_case)
     contact = solution.contact_points("lower-upper")
     profile = solution.contact_profile("lower-upper")
 
@@ -166,9 +164,8 @@ def test_contact_conditions_hold_at_every_node(paper_case):
     assert (profile.station[0], profile.station[-1]) == pytest.approx((200.0, 300.0))
 
 
-def test_gaps_are_those_of_the_displaced_faces(two_cantilevers):
-    scene = two_cantilevers(20000.0, 0.5)
-    solution = solve(scene)
+def test_gaps_are_those_of_the_displaced_faces(paper_solution):
+    solution = paper_solution("e20_g05")
     contact = solution.contact_points("lower-upper")
     at_middle = np.abs(contact.position[2]) < 1e-9
     x = contact.position[0, at_middle]
@@ -183,9 +180,8 @@ def test_gaps_are_those_of_the_displaced_faces(two_cantilevers):
     np.testing.assert_allclose(faces[1] - faces[0] + 0.5, contact.gap[at_middle], atol=1e-9)
 
 
-def test_the_pressure_integrates_to_the_force(paper_case):
-    _, scene = paper_case
-    solution = solve(scene)
+def test_the_pressure_integrates_to_the_force(paper_case, paper_solution):
+    solution = paper_solution(paper_case)
     profile, points = solution.contact_profile("lower-upper"), solution.contact_points("lower-upper")
 
     # Simpson's rule over the elements, as the nodes' areas
@@ -195,9 +191,8 @@ def test_the_pressure_integrates_to_the_force(paper_case):
     assert 15.0 * integral == pytest.approx(points.force.sum(), rel=1e-12)
 
 
-def test_where_contact_is_looked_for_does_not_change_the_answer(two_cantilevers, monkeypatch):
-    scene = two_cantilevers(20000.0, 0.0)
-    near = solve(scene)
+def test_where_contact_is_looked_for_does_not_change_the_answer(two_cantilevers, paper_solution, monkeypatch):
+    scene, near = two_cantilevers(20000.0, 0.0), paper_solution("e20_g0")
     monkeypatch.setattr(module, "_candidates", lambda pair, nodes, located: np.zeros(nodes.area.size, dtype=bool))
 
     found_late = solve(scene)
@@ -245,9 +240,8 @@ def test_swapping_first_and_second_changes_the_force_only_by_the_interpolation(t
     assert forces[1] == pytest.approx(forces[0], rel=1e-8)
 
 
-def test_non_matching_meshes_agree_with_matching_ones(two_cantilevers, monkeypatch):
-    scene = two_cantilevers(20000.0, 0.0)
-    matching = solve(scene)
+def test_non_matching_meshes_agree_with_matching_ones(two_cantilevers, paper_solution, monkeypatch):
+    scene, matching = two_cantilevers(20000.0, 0.0), paper_solution("e20_g0")
     original = module.rod_borders
 
     def shifted(scene, rod, refinement, symmetric):
@@ -270,6 +264,13 @@ def test_a_rod_without_a_clamp_is_refused_by_name(two_cantilevers):
     scene = dataclasses.replace(two_cantilevers(50000.0, 0.0), supports=(Clamp("lower", "start"),))
 
     with pytest.raises(SceneError, match=r"no clamp on rod 'upper'.*singular"):
+        solve(scene)
+
+
+def test_a_nearly_incompressible_rod_is_refused_by_name(cantilever):
+    scene = cantilever((0.0, -1.0, 0.0), poisson_ratio=0.49995)
+
+    with pytest.raises(SceneError, match=r"rods\.rod\.material\.poisson_ratio: found 0\.49995; .*at most 0\.4999"):
         solve(scene)
 
 
