@@ -16,9 +16,8 @@ from cases.scene import Rectangle, Rod, Scene, SectionForce
 from rodmodel.axial import shape_functions
 from rodmodel.centre_line import frame
 from rodmodel.chain import Chain
-from rodmodel.section import Fields, SectionStiffness, section_stiffness
-from rodmodel.stiffness import Element, condensed_element
-from rodmodel.triangular import lower_solve, transposed_solve
+from rodmodel.section import Fields, section_stiffness
+from rodmodel.stiffness import Element, ElementFamily, condensed_element, element_family
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -34,22 +33,19 @@ class ElementStore:
     """
 
     order: int
-    _sections: dict[tuple[Rectangle, float, Fields], SectionStiffness] = field(default_factory=dict)
+    _families: dict[tuple[Rectangle, float, Fields], ElementFamily] = field(default_factory=dict)
     _elements: dict[tuple[Rectangle, float, Fields, float], Element] = field(default_factory=dict)
-
-    def section(self, rod: Rod, fields: Fields) -> SectionStiffness:
-        """S_ab of the rod for unit Young's modulus."""
-        key = (rod.section, rod.material.poisson_ratio, fields)
-        if key not in self._sections:
-            self._sections[key] = section_stiffness(rod.section, replace(rod.material, young_modulus=1.0), fields)
-        return self._sections[key]
 
     def element(self, rod: Rod, fields: Fields, length: float) -> Element:
         """Condensed element of the rod for unit Young's modulus; `length` in mm."""
+        kind = (rod.section, rod.material.poisson_ratio, fields)
+        if kind not in self._families:
+            section = section_stiffness(rod.section, replace(rod.material, young_modulus=1.0), fields)
+            self._families[kind] = element_family(self.order, fields, section)
         # Lengths that differ only by the round-off of the borders they come from are one length.
-        key = (rod.section, rod.material.poisson_ratio, fields, float(f"{length:.11e}"))
+        key = (*kind, float(f"{length:.11e}"))
         if key not in self._elements:
-            self._elements[key] = condensed_element(length, self.order, self.section(rod, fields))
+            self._elements[key] = condensed_element(self._families[kind], length)
         return self._elements[key]
 
 
@@ -128,8 +124,8 @@ def functionals_at(assembled: AssembledRod, station: Array, direction: Array) ->
         if len(inner) == 0:
             nodal[element_index : element_index + 2, :, members] += condensed
             continue
-        right = part[2:, :, inner].reshape(len(element.bubble_factor), -1)
-        half = lower_solve(element.bubble_factor, right)
+        right = part[2:, :, inner].reshape(len(element.half_coupling), -1)
+        half = element.bubbles.half_solve(right)
         condensed[:, :, inner] -= (element.half_coupling.T @ half).reshape(2, n_fields, -1)
         nodal[element_index : element_index + 2, :, members] += condensed
         bubbles.append((int(element_index), members[inner], half / np.sqrt(assembled.rod.material.young_modulus)))
@@ -188,6 +184,6 @@ def coefficients(assembled: AssembledRod, load: Functionals) -> Array:
         halves[index] = halves.get(index, 0.0) + half[:, 0] / root
     for index, element in enumerate(assembled.elements):
         right = halves.get(index, 0.0) - element.half_coupling @ result[index, :2].ravel()
-        bubbles = transposed_solve(element.bubble_factor, right[:, None])
+        bubbles = element.bubbles.back_solve(right[:, None])
         result[index, 2:] = bubbles.reshape(-1, n_fields)
     return result

@@ -13,28 +13,49 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rodmodel.axial import axial_matrices
-from rodmodel.section import SectionStiffness
-from rodmodel.triangular import cholesky, lower_solve
+from rodmodel.section import Fields, SectionStiffness, W
+from rodmodel.triangular import cholesky, lower_solve, transposed_solve
 
 Array = NDArray[np.float64]
+IntArray = NDArray[np.int64]
 
 
-def element_stiffness(length: float, order: int, section: SectionStiffness) -> Array:
-    """Stiffness matrix of an element, shape ((order + 1) n_fields, (order + 1) n_fields).
+def stiffness_terms(order: int, section: SectionStiffness) -> Array:
+    """K_0, K_1, K_2 of the element stiffness K = L/2 K_0 + K_1 + 2/L K_2 with L its length.
 
-    Parameters
-    ----------
-    length : of the element, mm
-    order : polynomial order p along the rod
-    section : S_ab
+    Shape (3, n, n) with n = (order + 1) n_fields: M_00 kron S_00, M_01 kron S_01 and its transpose, M_11 kron S_11.
     """
     m00, m01, m11 = axial_matrices(order)
-    n_axial, n_fields = order + 1, len(section.s00)
-    # Rows (a, i), columns (b, j): the four terms in one product over the pairs of derivatives.
-    axial = np.stack([0.5 * length * m00, m01, m01.T, 2.0 / length * m11]).reshape(4, -1)
-    over_section = np.stack([section.s00, section.s01, section.s01.T, section.s11]).reshape(4, -1)
-    product = (axial.T @ over_section).reshape(n_axial, n_axial, n_fields, n_fields)
-    return product.transpose(0, 2, 1, 3).reshape(n_axial * n_fields, n_axial * n_fields)
+    mixed = np.kron(m01, section.s01)
+    return np.stack([np.kron(m00, section.s00), mixed + mixed.T, np.kron(m11, section.s11)])
+
+
+@dataclass(frozen=True, eq=False)
+class BubbleFactor:
+    """Cholesky factor of K_bb, block diagonal after a permutation.
+
+    Attributes
+    ----------
+    groups : degrees of freedom of each block
+    blocks : lower factor of each block
+    """
+
+    groups: tuple[IntArray, ...]
+    blocks: tuple[Array, ...]
+
+    def half_solve(self, right: Array) -> Array:
+        """L^-1 right, group after group, shape (n_bubbles, m)."""
+        parts = [lower_solve(block, right[group]) for group, block in zip(self.groups, self.blocks, strict=True)]
+        return np.concatenate(parts)
+
+    def back_solve(self, half: Array) -> Array:
+        """L^-T half in the order of the degrees of freedom, shape (n_bubbles, m)."""
+        result = np.empty_like(half)
+        start = 0
+        for group, block in zip(self.groups, self.blocks, strict=True):
+            result[group] = transposed_solve(block, half[start : start + len(group)])
+            start += len(group)
+        return result
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,25 +66,62 @@ class Element:
     ----------
     length : mm
     condensed : K_nn - K_nb K_bb^-1 K_bn, shape (n_nodal, n_nodal)
-    bubble_factor : lower Cholesky factor of K_bb, shape (n_bubbles, n_bubbles)
-    half_coupling : bubble_factor^-1 K_bn, shape (n_bubbles, n_nodal)
+    bubbles : L of K_bb = L L^T
+    half_coupling : L^-1 K_bn, shape (n_bubbles, n_nodal)
     """
 
     length: float
     condensed: Array
-    bubble_factor: Array
+    bubbles: BubbleFactor
     half_coupling: Array
 
 
-def condensed_element(length: float, order: int, section: SectionStiffness) -> Element:
-    """Element of a given length (mm) with its bubbles eliminated."""
-    stiffness = element_stiffness(length, order, section)
-    n_nodal = 2 * len(section.s00)
-    nodal, coupling, bubbles = (
-        stiffness[:n_nodal, :n_nodal],
-        stiffness[n_nodal:, :n_nodal],
-        stiffness[n_nodal:, n_nodal:],
+@dataclass(frozen=True, eq=False)
+class ElementFamily:
+    """All elements of one section and order: their stiffness terms, cut into the blocks that condensation needs.
+
+    Attributes
+    ----------
+    groups : bubbles that couple with one another alone
+    nodal : terms of K_nn, shape (3, n_nodal, n_nodal)
+    coupling : terms of K_bn by group, shape (3, n_group, n_nodal) each
+    bubbles : terms of K_bb by group, shape (3, n_group, n_group) each
+    """
+
+    groups: tuple[IntArray, ...]
+    nodal: Array
+    coupling: tuple[Array, ...]
+    bubbles: tuple[Array, ...]
+
+
+def element_family(order: int, fields: Fields, section: SectionStiffness) -> ElementFamily:
+    """Terms of the elements of a straight rod.
+
+    The rod looks the same from both ends. Bubbles even along the element for u and v and odd for w do not couple with
+    the others, so that K_bb falls into two blocks of half its size.
+    """
+    terms = stiffness_terms(order, section)
+    n_nodal = 2 * fields.count
+    parity = np.add.outer(np.arange(2, order + 1), fields.table[0] == W).ravel() % 2
+    groups = tuple(group for group in (np.flatnonzero(parity == 0), np.flatnonzero(parity == 1)) if len(group))
+    rows = [n_nodal + group for group in groups]
+    return ElementFamily(
+        groups,
+        np.ascontiguousarray(terms[:, :n_nodal, :n_nodal]),
+        tuple(np.ascontiguousarray(terms[:, row, :n_nodal]) for row in rows),
+        tuple(np.ascontiguousarray(terms[:, row][:, :, row]) for row in rows),
     )
-    factor = cholesky(bubbles)
-    half = lower_solve(factor, coupling)
-    return Element(length, nodal - half.T @ half, factor, half)
+
+
+def condensed_element(family: ElementFamily, length: float) -> Element:
+    """Element of a given length (mm) with its bubbles eliminated."""
+    scale = np.array([0.5 * length, 1.0, 2.0 / length])
+
+    def at_length(terms: Array) -> Array:
+        return np.asarray((scale @ terms.reshape(3, -1)).reshape(terms.shape[1:]))
+
+    factor = BubbleFactor(family.groups, tuple(cholesky(at_length(terms)) for terms in family.bubbles))
+    half = np.concatenate(
+        [lower_solve(block, at_length(terms)) for block, terms in zip(factor.blocks, family.coupling, strict=True)]
+    )
+    return Element(length, at_length(family.nodal) - half.T @ half, factor, half)

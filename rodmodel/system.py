@@ -119,10 +119,13 @@ def _gap_functionals(
         for side in (pair.first, pair.second):
             if side.rod != rod.name:
                 continue
-            facing = facing_points(scene, pair, *grids[pair.name].flat())
+            grid = grids[pair.name]
+            facing = facing_points(scene, pair, *grid.flat())
             x, y, station = facing.first if side is pair.first else facing.second
+            # Parallel rods: every station has the same points across.
+            across = inward_direction(assembled, side.face, x[: len(grid.across)], y[: len(grid.across)])
             stations.append(station)
-            directions.append(inward_direction(assembled, side.face, x, y))
+            directions.append(np.tile(across, grid.station.size))
             places.append(np.arange(points[pair.name].start, points[pair.name].stop))
     functionals = functionals_at(assembled, np.concatenate(stations), np.concatenate(directions, axis=1))
     return functionals, np.concatenate(places)

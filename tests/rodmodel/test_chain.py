@@ -8,8 +8,8 @@ import pytest
 import rodmodel as rm
 from rodmodel.assembly import ElementStore, assembled_rod, coefficients, compliance, functionals_at
 from rodmodel.axial import shape_functions
-from rodmodel.section import Fields
-from rodmodel.stiffness import element_stiffness
+from rodmodel.section import Fields, section_stiffness
+from rodmodel.stiffness import stiffness_terms
 
 BORDERS = np.array([0.0, 40.0, 100.0, 130.0])
 
@@ -22,7 +22,7 @@ def scene(cantilever: Callable[..., rm.Scene]) -> rm.Scene:
 def dense_inverse(scene: rm.Scene, fields: Fields, order: int, borders: np.ndarray) -> np.ndarray:
     """Inverse stiffness on all nodes and bubbles of the clamped rod: node dofs first, then bubbles by element."""
     n, n_elements = fields.count, len(borders) - 1
-    store = ElementStore(order)
+    terms = stiffness_terms(order, section_stiffness(scene.rods[0].section, scene.rods[0].material, fields))
     size = n * (n_elements + 1 + n_elements * (order - 1))
     stiffness = np.zeros((size, size))
     for index, length in enumerate(np.diff(borders)):
@@ -32,8 +32,7 @@ def dense_inverse(scene: rm.Scene, fields: Fields, order: int, borders: np.ndarr
                 n * (n_elements + 1) + np.arange(index * n * (order - 1), (index + 1) * n * (order - 1)),
             ]
         )
-        unit = element_stiffness(float(length), order, store.section(scene.rods[0], fields))
-        stiffness[np.ix_(rows, rows)] += scene.rods[0].material.young_modulus * unit
+        stiffness[np.ix_(rows, rows)] += np.tensordot([0.5 * length, 1.0, 2.0 / length], terms, axes=1)
     inverse = np.zeros_like(stiffness)
     inverse[n:, n:] = np.linalg.inv(stiffness[n:, n:])
     return inverse
