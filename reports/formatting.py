@@ -23,7 +23,9 @@ def number(value: float | None, digits: int = 6) -> str:
     if value is None:
         return NOTHING
     magnitude = abs(value)
-    if magnitude != 0.0 and not 1e-4 <= magnitude < 1e7:
+    if magnitude == 0.0:
+        return "0"
+    if not 1e-4 <= magnitude < 1e7:
         return f"{value:.{digits - 1}e}"
     decimals = digits - 1
     if magnitude >= 1.0:
@@ -50,7 +52,7 @@ def measure(quantity: Quantity, value: float | None) -> str:
     if value is None:
         return "unknown"
     kind = QUANTITIES[quantity]
-    return f"{100.0 * value:.2g} %" if kind.relative else f"{value:.2g} {kind.unit}"
+    return f"{100.0 * value:.3g} %" if kind.relative else f"{value:.3g} {kind.unit}"
 
 
 def title(comparison: Comparison) -> str:

@@ -196,7 +196,7 @@ def _second_order(coarse: float, medium: float, fine: float) -> Extrapolation:
     return Extrapolation(fine + (fine - medium) / 3.0, abs(fine - medium), 2.0)
 
 
-@pytest.fixture
+@pytest.fixture(scope="session")
 def case_run() -> CaseRun:
     """A case of the library as if solved: closed forms for the rod model and for three 3D meshes."""
     case = load_case("two-cantilevers-e20-g0")
