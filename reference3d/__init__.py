@@ -7,7 +7,8 @@
 """
 
 from reference3d.sequence import REFINEMENTS, formal_order, solve_sequence
-from reference3d.solution import DEFAULT_REFINEMENT, Solution, solve
+from reference3d.solution import Solution
+from reference3d.solver import DEFAULT_REFINEMENT, solve
 from reference3d.uncertainty import GridConvergence, clamp_singularity_exponent, grid_convergence
 
 __all__ = [

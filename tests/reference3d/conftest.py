@@ -13,7 +13,7 @@ from cases.scene import Clamp, ContactPair, Line, Material, Rectangle, Rod, RodF
 from reference3d.elasticity import layered_stiffness
 from reference3d.grading import Borders
 from reference3d.mesh import box_mesh
-from reference3d.solution import solve
+from reference3d.solver import solve
 
 SECTION = Rectangle(15.0, 15.0)
 

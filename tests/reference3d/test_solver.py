@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 from cases.scene import Clamp, Line, Material, Rectangle, Rod, RodFace, Scene, SceneError
-from reference3d import solution as module
-from reference3d.solution import solve
+from reference3d import body, solver
+from reference3d.field import displacement
+from reference3d.solver import solve
 
 UP = (0.0, 1.0, 0.0)
 
@@ -133,7 +134,7 @@ def test_moments_from_stress_and_from_equilibrium_agree(paper_solution):
 def test_the_symmetric_half_gives_the_full_solution(two_cantilevers, monkeypatch):
     scene = two_cantilevers(50000.0, 0.0)
     half = solve(scene, 1)
-    monkeypatch.setattr(module, "is_symmetric", lambda _: False)
+    monkeypatch.setattr(solver, "is_symmetric", lambda _: False)
 
     full = solve(scene, 1)
 
@@ -174,7 +175,7 @@ def test_gaps_are_those_of_the_displaced_faces(paper_solution):
     for rod, offset, height in (("lower", 0.0, 7.5), ("upper", 200.0, -7.5)):
         field = solution.rods[rod].field
         points = np.stack([0 * x, np.full_like(x, height), x - offset])
-        faces.append(module.displacement(field, points)[1])
+        faces.append(displacement(field, points)[1])
 
     # round-off of displacements of 1 mm through the condition of the stiffness
     np.testing.assert_allclose(faces[1] - faces[0] + 0.5, contact.gap[at_middle], atol=1e-9)
@@ -193,7 +194,7 @@ def test_the_pressure_integrates_to_the_force(paper_case, paper_solution):
 
 def test_where_contact_is_looked_for_does_not_change_the_answer(two_cantilevers, paper_solution, monkeypatch):
     scene, near = two_cantilevers(20000.0, 0.0), paper_solution("e20_g0")
-    monkeypatch.setattr(module, "_candidates", lambda pair, nodes, located: np.zeros(nodes.area.size, dtype=bool))
+    monkeypatch.setattr(solver, "_candidates", lambda pair, nodes, located: np.zeros(nodes.area.size, dtype=bool))
 
     found_late = solve(scene)
 
@@ -242,7 +243,7 @@ def test_swapping_first_and_second_changes_the_force_only_by_the_interpolation(t
 
 def test_non_matching_meshes_agree_with_matching_ones(two_cantilevers, paper_solution, monkeypatch):
     scene, matching = two_cantilevers(20000.0, 0.0), paper_solution("e20_g0")
-    original = module.rod_borders
+    original = body.rod_borders
 
     def shifted(scene, rod, refinement, symmetric):
         borders = original(scene, rod, refinement, symmetric)
@@ -252,7 +253,7 @@ def test_non_matching_meshes_agree_with_matching_ones(two_cantilevers, paper_sol
         moved = np.where(inside, borders.s + 0.4 * np.sin(np.pi * borders.s / 50.0), borders.s)
         return dataclasses.replace(borders, s=moved)
 
-    monkeypatch.setattr(module, "rod_borders", shifted)
+    monkeypatch.setattr(body, "rod_borders", shifted)
     non_matching = solve(scene)
 
     forces = [each.contact_points("lower-upper").force.sum() for each in (matching, non_matching)]

@@ -1,0 +1,267 @@
+"""Solve a scene as a 3D solid: each rod's stiffness factorised once, contact in compliance form.
+
+Contact is located on the coarsest mesh; on finer ones compliance is computed for the nodes near it, and every
+other node is seen to be open afterwards.
+"""
+
+from __future__ import annotations
+
+import time
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import csc_array, hstack
+
+from cases.scene import ContactPair, Rod, Scene, SceneError
+from reference3d.body import Body, discretise
+from reference3d.contact import ContactNodes, contact_nodes, near_contact, solve_complementarity, solve_nested
+from reference3d.factor import compliance
+from reference3d.factor import solve as solve_layers
+from reference3d.field import Field, mirrored
+from reference3d.frames import is_symmetric, rod_frame
+from reference3d.quadratic import line_nodes
+from reference3d.solution import Cost, PairResult, RodResult, Solution
+
+Array = NDArray[np.float64]
+BoolArray = NDArray[np.bool_]
+IntArray = NDArray[np.int64]
+
+DEFAULT_REFINEMENT = 2
+# contact is looked for where the coarse mesh found it and this many section sides around
+MARGIN = 0.5
+# closer to incompressible, displacement elements lock and the stiffness loses its last digits
+LARGEST_POISSON_RATIO = 0.4999
+# largest force left over, relative to the largest internal force, that a solution may have
+RESIDUAL_TOLERANCE = 1e-8
+
+
+def solve(scene: Scene, refinement: int = DEFAULT_REFINEMENT, located: Solution | None = None) -> Solution:
+    """Solve a scene as a 3D solid.
+
+    Parameters
+    ----------
+    refinement : k, elements along each axis of a coarse cell (`grading`); unknowns grow with its third power
+    located : solution of the same scene on a coarser mesh, if there is one, which shows where contact is;
+        solved here on the coarsest mesh if there is none
+
+    Raises
+    ------
+    SceneError
+        if the scene is outside what this solver treats: a rod without a clamp, a Poisson's ratio next to
+        0.5, rods in contact that are not parallel, faces of a pair that are not.
+    ValueError
+        if `refinement` is below 1.
+    """
+    if refinement < 1:
+        raise ValueError(f"refinement: found {refinement}; a whole number of at least 1 is needed")
+    _require_support(scene)
+    _require_compressible(scene)
+    begin = time.perf_counter()
+    symmetric = is_symmetric(scene)
+    # contact is located on the coarsest mesh, so that compliance is computed only where it is needed
+    steps = 0
+    if located is None and refinement > 1 and scene.contacts:
+        located = solve(scene, 1)
+        steps = located.contact_solutions
+    bodies = {rod.name: discretise(scene, rod, refinement, symmetric) for rod in scene.rods}
+    borders = {name: body.borders for name, body in bodies.items()}
+    nodes = [contact_nodes(scene, pair, borders, symmetric) for pair in scene.contacts]
+    ready = time.perf_counter()
+
+    candidates = [_candidates(pair, grid, located) for pair, grid in zip(scene.contacts, nodes, strict=True)]
+    while True:
+        forces, outcome, tried = _contact_forces(scene, bodies, nodes, candidates)
+        steps += tried
+        fields, gaps = _respond(scene, bodies, nodes, forces)
+        missed = [~chosen & (gap < 0.0) for chosen, gap in zip(candidates, gaps, strict=True)]
+        if not any(miss.any() for miss in missed):
+            break
+        candidates = [np.ones_like(chosen) for chosen in candidates]
+    return _collect(scene, refinement, symmetric, bodies, nodes, forces, gaps, fields, outcome, steps, (begin, ready))
+
+
+def _require_support(scene: Scene) -> None:
+    clamped = {support.rod for support in scene.supports}
+    for rod in scene.rods:
+        if rod.name not in clamped:
+            found = f"no clamp on rod '{rod.name}'"
+            raise SceneError(
+                "supports", found, "the 3D reference needs a clamp on every rod, or its stiffness is singular"
+            )
+
+
+def _require_compressible(scene: Scene) -> None:
+    for rod in scene.rods:
+        ratio = rod.material.poisson_ratio
+        if ratio > LARGEST_POISSON_RATIO:
+            remedy = f"the displacements of the 3D reference need at most {LARGEST_POISSON_RATIO:g}"
+            raise SceneError(f"rods.{rod.name}.material.poisson_ratio", f"{ratio:.10g}", remedy)
+
+
+def _candidates(pair: ContactPair, nodes: ContactNodes, located: Solution | None) -> BoolArray:
+    """Contact nodes that may touch, shape (n_s n_lateral,): near those that do on the coarse mesh."""
+    if located is None:
+        return np.ones(nodes.area.size, dtype=bool)
+    coarse = located.pairs[pair.name]
+    touched = coarse.station[(coarse.pressure > 0.0).any(axis=1)]
+    if len(touched) == 0:
+        return np.zeros(nodes.area.size, dtype=bool)
+    sections = [located.scene.rod(side.rod).section for side in (pair.first, pair.second)]
+    margin = MARGIN * min(min(section.width, section.height) for section in sections)
+    near = near_contact(nodes.station, touched, margin)
+    return np.repeat(near, len(nodes.lateral))
+
+
+def _sides(scene: Scene, nodes: list[ContactNodes], rod: Rod) -> list[csc_array | None]:
+    """For each pair, the rows of the normal displacement of this rod's face, if it is in the pair."""
+    found: list[csc_array | None] = []
+    for pair, grid in zip(scene.contacts, nodes, strict=True):
+        found.append(grid.first if pair.first.rod == rod.name else grid.second if pair.second.rod == rod.name else None)
+    return found
+
+
+def _contact_forces(
+    scene: Scene, bodies: dict[str, Body], nodes: list[ContactNodes], candidates: list[BoolArray]
+) -> tuple[list[Array], str, int]:
+    """Nodal contact forces of each pair, outcome of the contact iteration, and the active sets it tried."""
+    counts = [int(chosen.sum()) for chosen in candidates]
+    starts = np.concatenate([[0], np.cumsum(counts)])
+    total = int(starts[-1])
+    forces = [np.zeros(grid.area.size) for grid in nodes]
+    if total == 0:
+        return forces, "converged", 0
+    matrix, offset = np.zeros((total, total)), np.zeros(total)
+    for index, (pair, grid, chosen) in enumerate(zip(scene.contacts, nodes, candidates, strict=True)):
+        place = np.arange(starts[index], starts[index + 1])
+        matrix[place, place] += 1.0 / (pair.penalty * grid.area.ravel()[chosen])
+        offset[place] += pair.gap
+    for body in bodies.values():
+        rows, places = [], []
+        for index, side in enumerate(_sides(scene, nodes, body.rod)):
+            if side is not None:
+                rows.append(side.tocsr()[candidates[index]].T)
+                places.append(np.arange(starts[index], starts[index + 1]))
+        if not rows:
+            continue
+        columns = csc_array(hstack([*rows, csc_array(body.load.reshape(-1, 1))]))
+        columns.data[body.fixed.ravel()[columns.indices]] = 0.0
+        columns.eliminate_zeros()
+        columns = columns.tocsr()[body.free_everywhere].tocsc()
+        work = compliance(body.factor, columns)
+        place = np.concatenate(places)
+        matrix[np.ix_(place, place)] += work[:-1, :-1]
+        offset[place] += work[:-1, -1]
+    if all(chosen.all() for chosen in candidates):
+        answer = solve_nested(matrix, offset, [grid.area.shape for grid in nodes])
+    else:
+        answer = solve_complementarity(matrix, offset, offset < 0.0)
+    for index, chosen in enumerate(candidates):
+        forces[index][chosen] = answer.force[starts[index] : starts[index + 1]]
+    return forces, answer.outcome, answer.steps
+
+
+def _respond(
+    scene: Scene, bodies: dict[str, Body], nodes: list[ContactNodes], forces: list[Array]
+) -> tuple[dict[str, tuple[Array, Array]], list[Array]]:
+    """Displacement and force of each body, shape (n_planes, m), and the gaps of each pair."""
+    fields: dict[str, tuple[Array, Array]] = {}
+    gaps = [np.full(grid.area.size, float(pair.gap)) for pair, grid in zip(scene.contacts, nodes, strict=True)]
+    for name, body in bodies.items():
+        force = body.load.copy()
+        sides = _sides(scene, nodes, body.rod)
+        for side, contact_force in zip(sides, forces, strict=True):
+            if side is not None:
+                force += (side.T @ contact_force).reshape(force.shape)
+        field = np.zeros_like(force)
+        field[:, body.free] = solve_layers(body.factor, np.where(body.fixed, 0.0, force)[:, body.free])
+        for index, side in enumerate(sides):
+            if side is not None:
+                gaps[index] += side @ field.ravel()
+        fields[name] = (field, force)
+    return fields, gaps
+
+
+def _collect(
+    scene: Scene,
+    refinement: int,
+    symmetric: bool,
+    bodies: dict[str, Body],
+    nodes: list[ContactNodes],
+    forces: list[Array],
+    gaps: list[Array],
+    fields: dict[str, tuple[Array, Array]],
+    outcome: str,
+    steps: int,
+    moments: tuple[float, float],
+) -> Solution:
+    """The solution of the full section from that of the bodies."""
+    rods: dict[str, RodResult] = {}
+    energy, worst, largest, volume, elements, unknowns = 0.0, 0.0, 0.0, 0.0, 0, 0
+    for name, body in bodies.items():
+        displaced, force = fields[name]
+        internal = body.stiffness.apply(displaced)
+        out_of_balance = internal - force
+        worst = max(worst, float(np.abs(out_of_balance[~body.fixed]).max()))
+        largest = max(largest, float(np.abs(internal).max()))
+        energy += (2.0 if symmetric else 1.0) * 0.5 * float(np.vdot(displaced, internal))
+        x, y, s = body.borders.x, body.borders.y, body.borders.s
+        volume += float((x[-1] - x[0]) * (y[-1] - y[0]) * (s[-1] - s[0]))
+        elements += (len(x) - 1) * (len(y) - 1) * (len(s) - 1)
+        unknowns += int((~body.fixed).sum())
+        shape = (2 * len(s) - 1, 2 * len(y) - 1, 2 * len(x) - 1, 3)
+        field = Field(body.borders, displaced.reshape(shape))
+        reaction = np.stack(
+            [_support_reaction(scene, body, out_of_balance.reshape(shape), symmetric, end) for end in (0, -1)]
+        )
+        rods[name] = RodResult(body.rod, mirrored(field) if symmetric else field, reaction)
+    pairs = {}
+    for pair, grid, force, gap in zip(scene.contacts, nodes, forces, gaps, strict=True):
+        pairs[pair.name] = _pair_result(pair, grid, force, gap, symmetric)
+    residual = worst / largest if largest > 0.0 else 0.0
+    if outcome == "converged" and residual > RESIDUAL_TOLERANCE:
+        outcome = f"refused: forces are out of balance by {residual:.1e} of the largest"
+    begin, ready = moments
+    return Solution(
+        scene=scene,
+        outcome=outcome,
+        contact_solutions=steps,
+        strain_energy=energy,
+        cost=Cost(unknowns, ready - begin, time.perf_counter() - ready),
+        residual=residual,
+        representative_size=(volume / elements) ** (1.0 / 3.0),
+        refinement=refinement,
+        rods=rods,
+        pairs=pairs,
+    )
+
+
+def _support_reaction(scene: Scene, body: Body, nodal: Array, symmetric: bool, end: int) -> Array:
+    """Force and moment about the section's centre that a clamp exerts on the rod, global, shape (6,)."""
+    clamped = {support.end for support in scene.supports if support.rod == body.rod.name}
+    if ("start" if end == 0 else "end") not in clamped:
+        return np.zeros(6)
+    force = nodal[end]
+    x, y = line_nodes(body.borders.x), line_nodes(body.borders.y)
+    if symmetric:
+        # twice the half: what acts across the plane is internal, what acts along x cancels
+        force = force * np.array([0.0, 2.0, 2.0])
+        x = np.zeros_like(x)
+    arm = np.zeros_like(force)
+    arm[..., 0], arm[..., 1] = x, y[:, None]
+    local = np.stack([force.sum(axis=(0, 1)), np.cross(arm, force).sum(axis=(0, 1))])
+    return np.asarray((local @ rod_frame(body.rod).axes).ravel())
+
+
+def _pair_result(pair: ContactPair, nodes: ContactNodes, force: Array, gap: Array, symmetric: bool) -> PairResult:
+    # in contact the gap follows from the force, free of the cancellation in the difference of displacements
+    shape = nodes.area.shape
+    area = nodes.area
+    gap = np.where(force > 0.0, -force / (pair.penalty * area.ravel()), np.maximum(gap, 0.0)).reshape(shape)
+    lateral = nodes.lateral
+    if symmetric:
+        half = area.copy()
+        half[:, 0] *= 2.0
+        area = np.concatenate([half[:, :0:-1], half], axis=1)
+        gap = np.concatenate([gap[:, :0:-1], gap], axis=1)
+        lateral = np.concatenate([-lateral[:0:-1], lateral])
+    return PairResult(pair, nodes.station, lateral, area, gap)
