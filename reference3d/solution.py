@@ -98,7 +98,7 @@ class Solution:
 
     Attributes
     ----------
-    residual : largest nodal force out of balance relative to the largest internal nodal force
+    residual : largest nodal force out of balance relative to the rod's largest internal nodal force
     representative_size : cube root of the mean element volume, mm (h of ASME V&V 20)
     refinement : k of `grading`
     """

@@ -24,15 +24,16 @@ from reference3d.solution import Cost, PairResult, RodResult, Solution
 
 Array = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
-IntArray = NDArray[np.int64]
 
 DEFAULT_REFINEMENT = 2
 # contact is looked for where the coarse mesh found it and this many section sides around
 MARGIN = 0.5
 # closer to incompressible, displacement elements lock and the stiffness loses its last digits
 LARGEST_POISSON_RATIO = 0.4999
-# largest force left over, relative to the largest internal force, that a solution may have
+# what a solution may leave over: nodal force out of balance, of the rod's largest internal nodal force, and
+# difference between the gap that a contact force implies and that of the faces, of the largest displacement
 RESIDUAL_TOLERANCE = 1e-8
+GAP_TOLERANCE = 1e-6
 
 
 def solve(scene: Scene, refinement: int = DEFAULT_REFINEMENT, located: Solution | None = None) -> Solution:
@@ -104,8 +105,6 @@ def _candidates(pair: ContactPair, nodes: ContactNodes, located: Solution | None
         return np.ones(nodes.area.size, dtype=bool)
     coarse = located.pairs[pair.name]
     touched = coarse.station[(coarse.pressure > 0.0).any(axis=1)]
-    if len(touched) == 0:
-        return np.zeros(nodes.area.size, dtype=bool)
     sections = [located.scene.rod(side.rod).section for side in (pair.first, pair.second)]
     margin = MARGIN * min(min(section.width, section.height) for section in sections)
     near = near_contact(nodes.station, touched, margin)
@@ -196,13 +195,15 @@ def _collect(
 ) -> Solution:
     """The solution of the full section from that of the bodies."""
     rods: dict[str, RodResult] = {}
-    energy, worst, largest, volume, elements, unknowns = 0.0, 0.0, 0.0, 0.0, 0, 0
+    energy, residual, moved, volume, elements, unknowns = 0.0, 0.0, 0.0, 0.0, 0, 0
     for name, body in bodies.items():
         displaced, force = fields[name]
         internal = body.stiffness.apply(displaced)
         out_of_balance = internal - force
-        worst = max(worst, float(np.abs(out_of_balance[~body.fixed]).max()))
-        largest = max(largest, float(np.abs(internal).max()))
+        largest = float(np.abs(internal).max())
+        if largest > 0.0:
+            residual = max(residual, float(np.abs(out_of_balance[~body.fixed]).max()) / largest)
+        moved = max(moved, float(np.abs(displaced).max()))
         energy += (2.0 if symmetric else 1.0) * 0.5 * float(np.vdot(displaced, internal))
         x, y, s = body.borders.x, body.borders.y, body.borders.s
         volume += float((x[-1] - x[0]) * (y[-1] - y[0]) * (s[-1] - s[0]))
@@ -214,12 +215,15 @@ def _collect(
             [_support_reaction(scene, body, out_of_balance.reshape(shape), symmetric, end) for end in (0, -1)]
         )
         rods[name] = RodResult(body.rod, mirrored(field) if symmetric else field, reaction)
-    pairs = {}
+    pairs, mismatch = {}, 0.0
     for pair, grid, force, gap in zip(scene.contacts, nodes, forces, gaps, strict=True):
         pairs[pair.name] = _pair_result(pair, grid, force, gap, symmetric)
-    residual = worst / largest if largest > 0.0 else 0.0
+        implied = -force / (pair.penalty * grid.area.ravel())
+        mismatch = max(mismatch, float(np.abs(gap - implied)[force > 0.0].max(initial=0.0)))
     if outcome == "converged" and residual > RESIDUAL_TOLERANCE:
         outcome = f"refused: forces are out of balance by {residual:.1e} of the largest"
+    if outcome == "converged" and mismatch > GAP_TOLERANCE * moved:
+        outcome = f"refused: contact forces and displacements disagree by {mismatch:.1e} mm"
     begin, ready = moments
     return Solution(
         scene=scene,

@@ -204,6 +204,22 @@ def test_where_contact_is_looked_for_does_not_change_the_answer(two_cantilevers,
     )
 
 
+def test_forces_out_of_balance_are_refused(two_cantilevers, monkeypatch):
+    original = solver.solve_layers
+    monkeypatch.setattr(solver, "solve_layers", lambda factor, force: original(factor, force) * (1.0 + 1e-6))
+
+    assert solve(two_cantilevers(50000.0, 0.0), 1).outcome.startswith("refused: forces are out of balance by")
+
+
+def test_contact_forces_that_do_not_fit_the_displacements_are_refused(two_cantilevers, monkeypatch):
+    original = solver.compliance
+    monkeypatch.setattr(solver, "compliance", lambda factor, forces: original(factor, forces) * (1.0 + 1e-4))
+
+    outcome = solve(two_cantilevers(50000.0, 0.5), 1).outcome
+
+    assert outcome.startswith("refused: contact forces and displacements disagree by")
+
+
 def test_a_gap_that_does_not_close_leaves_the_rods_alone(two_cantilevers):
     solution = solve(two_cantilevers(50000.0, 50.0))
 
