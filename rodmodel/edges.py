@@ -13,6 +13,7 @@ from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.interpolate import BarycentricInterpolator
 
 from cases.scene import Scene
 from rodmodel.borders import Edge
@@ -134,8 +135,8 @@ def find_edges(
 ) -> EdgeSearch:
     """Roots of the edge pressures in the edge positions, all at once.
 
-    Each edge makes a first step alone, which gives its column of the Jacobian; from there on Broyden's method, which
-    for one edge is the secant method, kept between what its signs have shown.
+    Each edge makes a first step alone, which gives its column of the Jacobian; from there on Broyden's method. A single
+    edge is found by inverse quadratic interpolation (as in Brent's method), kept between what its signs have shown.
 
     Parameters
     ----------
@@ -146,11 +147,13 @@ def find_edges(
     zones = np.array([scene.contact(edge.pair).zone for edge in edges])
     longest = LONGEST_STEP * (zones[:, 1] - zones[:, 0])
     tried: list[Array] = []
+    values: list[Array] = []
 
     def residual(at: Array) -> tuple[Array, ContactSystem]:
-        tried.append(at)
         system = system_at(at)
-        return edge_pressures(system, moved(stretches, edges, at), edges), system
+        tried.append(at)
+        values.append(edge_pressures(system, moved(stretches, edges, at), edges))
+        return values[-1], system
 
     positions = _not_too_short(scene, stretches, edges, positions)
     value, system = residual(positions)
@@ -164,6 +167,8 @@ def find_edges(
             # Positive pressure at an edge: contact goes on beyond it.
             step = np.zeros(len(edges))
             step[first] = FIRST_STEP / LONGEST_STEP * longest[first] * np.sign(value[first])
+        elif len(edges) == 1:
+            step = outward * (_interpolated_root(tried[-3:], values[-3:]) - positions)
         else:
             step = outward * _newton_step(jacobian, value, _at_shortest(scene, stretches, edges, positions))
         if len(edges) == 1:
@@ -192,6 +197,14 @@ def _newton_step(jacobian: Array, value: Array, at_shortest: BoolArray) -> Array
     # Least squares: an edge that has not moved yet has an empty column and stays.
     step[free] = -np.linalg.lstsq(jacobian[np.ix_(free, free)], value[free])[0]
     return step
+
+
+def _interpolated_root(positions: Sequence[Array], values: Sequence[Array]) -> Array:
+    """Where the polynomial through position over value has value zero; the last position where values coincide."""
+    value = np.concatenate(values)
+    if len(np.unique(value)) < len(value):
+        return positions[-1]
+    return np.atleast_1d(BarycentricInterpolator(value, np.concatenate(positions))(0.0))
 
 
 @dataclass(frozen=True)
