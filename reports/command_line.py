@@ -1,7 +1,8 @@
 """The command `rodcheck`: list, solve, compare, report and schema.
 
 Heavy imports wait until a command needs them. Bad input is answered by one sentence on standard error and
-exit code 2; a verdict other than 'pass', a solver that did not converge or a case that failed by exit code 1.
+exit code 2; a verdict other than 'pass', a solver that did not converge or a case that failed by exit code 1. The
+report is there to show such verdicts: it fails only where a case could not be run to its end.
 """
 
 from __future__ import annotations
@@ -58,6 +59,7 @@ def run(arguments: Sequence[str]) -> int:
 
     try:
         code = app(list(arguments), exit_on_error=False, print_error=False, result_action="return_value")
+        sys.stdout.flush()
     except (CycloptsError, CaseError, SceneError, InputError) as error:
         print("rodcheck:", " ".join(str(error).split()), file=sys.stderr)
         return BAD_INPUT
@@ -67,6 +69,10 @@ def run(arguments: Sequence[str]) -> int:
     except KeyboardInterrupt:
         print("rodcheck: interrupted", file=sys.stderr)
         return INTERRUPTED
+    except BrokenPipeError:
+        # The reader has seen enough (`rodcheck schema case | head`); nothing may complain at exit either.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 0
     return code if isinstance(code, int) else 0
 
 
@@ -168,7 +174,9 @@ def report(*cases: str, output: Path = Path("report")) -> int:
     except OSError as error:
         raise InputError(f"--output: cannot write to {output} ({error.strerror}); give another folder") from error
     print(page)
-    return _exit_code(runs)
+    from reports.runner import Failure
+
+    return NOT_PASSED if any(isinstance(run, Failure) for run in runs) else 0
 
 
 @schema_app.command(name="result")

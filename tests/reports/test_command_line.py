@@ -162,6 +162,33 @@ def test_a_case_that_failed_is_shown_with_its_reason_beside_the_others(
     assert "pass" in shown
 
 
+@pytest.mark.parametrize("verdict", ["fail", "not resolved"])
+def test_report_shows_verdicts_and_fails_on_none_of_them(
+    verdict: str, case_run: CaseRun, solved, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    first, *others = passing(case_run).comparisons
+    solved(replace(case_run, comparisons=(replace(first, verdict=verdict), *others)))
+
+    assert command_line.run(["report", CASE, "--output", str(tmp_path)]) == 0
+    assert verdict in (tmp_path / "index.html").read_text()
+
+
+def test_report_exits_with_1_where_a_case_failed_to_run(case_run: CaseRun, solved, tmp_path: Path) -> None:
+    solved(Failure(case_run.case, "the mesh is singular"), passing(case_run))
+
+    assert command_line.run(["report", CASE, "--output", str(tmp_path)]) == 1
+    assert "the mesh is singular" in (tmp_path / "index.html").read_text()
+
+
+def test_a_reader_that_stops_reading_is_no_error() -> None:
+    command = f"{sys.executable} -c 'from reports.command_line import main; main()' schema case | head -n 1"
+    done = subprocess.run(["bash", "-o", "pipefail", "-c", command], capture_output=True, text=True, check=False)
+
+    assert done.stdout == "{\n"
+    assert done.stderr == ""
+    assert done.returncode == 0
+
+
 def test_report_refuses_a_file_as_its_folder_before_solving(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     file = tmp_path / "taken"
     file.write_text("")
