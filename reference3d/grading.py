@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 
 # lengths of coarse cells as multiples of the smaller side of the section; these and the grading over the section
-# were chosen by the change that halving each of them makes in contact force and deflection
+# were chosen by how contact force and deflection of the paper's cases change with each of them
 CLAMP_CELL = 0.08
 LOAD_CELL = 0.3
 ZONE_END_CELL = 0.15
