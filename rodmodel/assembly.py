@@ -25,16 +25,21 @@ IntArray = NDArray[np.int64]
 
 @dataclass(eq=False)
 class ElementStore:
-    """Elements made so far, so that none is made twice: neighbours, rods and border positions share them.
+    """Elements and factors made so far, so that none is made twice: neighbours, rods and border positions share them.
 
     Parameters
     ----------
     order : polynomial order p along the rods
+
+    Attributes
+    ----------
+    chains : last chain of every rod, by name
     """
 
     order: int
     _families: dict[tuple[Rectangle, float, Fields], ElementFamily] = field(default_factory=dict)
     _elements: dict[tuple[Rectangle, float, Fields, float], Element] = field(default_factory=dict)
+    chains: dict[str, Chain] = field(default_factory=dict)
 
     def element(self, rod: Rod, fields: Fields, length: float) -> Element:
         """Condensed element of the rod for unit Young's modulus; `length` in mm."""
@@ -68,8 +73,7 @@ class AssembledRod:
     @property
     def unknowns(self) -> int:
         """Degrees of freedom that are not held: free nodes and all bubbles, times the fields."""
-        free_nodes = self.chain.past_free - self.chain.first_free
-        return self.fields.count * (free_nodes + len(self.elements) * (self.order - 1))
+        return self.fields.count * (len(self.chain.nodes) + len(self.elements) * (self.order - 1))
 
     def locate(self, station: Array) -> tuple[IntArray, Array]:
         """Element index and xi of stations (mm); a station on a border belongs to the element before it."""
@@ -82,7 +86,14 @@ def assembled_rod(scene: Scene, rod: Rod, fields: Fields, borders: Array, store:
     """Make (or fetch from `store`) the elements between `borders` and factorise the chain."""
     clamped = {support.end for support in scene.supports if support.rod == rod.name}
     elements = tuple(store.element(rod, fields, float(length)) for length in np.diff(borders))
-    chain = Chain(elements, rod.material.young_modulus, "start" in clamped, "end" in clamped)
+    chain = Chain(
+        elements,
+        rod.material.young_modulus,
+        "start" in clamped,
+        "end" in clamped,
+        previous=store.chains.get(rod.name),
+    )
+    store.chains[rod.name] = chain
     return AssembledRod(rod, fields, store.order, borders, elements, chain)
 
 
@@ -103,50 +114,73 @@ class Functionals:
     bubbles: tuple[tuple[int, IntArray, Array], ...]
 
 
-def functionals_at(assembled: AssembledRod, station: Array, direction: Array) -> Functionals:
+@dataclass(frozen=True, eq=False)
+class Part:
+    """Share of one element in functionals: their coefficients on its nodes and bubbles.
+
+    Attributes
+    ----------
+    element : its index
+    columns : numbers of the functionals
+    values : shape (order + 1, n_fields, len(columns))
+    """
+
+    element: int
+    columns: IntArray
+    values: Array
+
+
+def point_parts(assembled: AssembledRod, station: Array, direction: Array) -> list[Part]:
     """Displacement at points of the rod, one functional a point.
 
     station : arc length of the points, mm, shape (m,)
     direction : value of every field at the points, in the direction asked for, shape (n_fields, m)
     """
-    n_nodes, n_fields = len(assembled.borders), assembled.fields.count
     index, xi = assembled.locate(station)
     along = shape_functions(assembled.order, xi)
-    nodal = np.zeros((n_nodes, n_fields, len(station)))
-    bubbles = []
-    for element_index in np.unique(index):
-        element = assembled.elements[element_index]
-        members = np.flatnonzero(index == element_index)
-        part = along[:, None, members] * direction[None, :, members]
-        # Shape functions vanish at the nodes only up to round-off: points on a node need no bubbles.
-        inner = np.flatnonzero(np.abs(xi[members]) < 1.0 - 1e-12)
-        condensed = part[:2]
-        if len(inner) == 0:
-            nodal[element_index : element_index + 2, :, members] += condensed
-            continue
-        right = part[2:, :, inner].reshape(len(element.half_coupling), -1)
-        half = element.bubbles.half_solve(right)
-        condensed[:, :, inner] -= (element.half_coupling.T @ half).reshape(2, n_fields, -1)
-        nodal[element_index : element_index + 2, :, members] += condensed
-        bubbles.append((int(element_index), members[inner], half / np.sqrt(assembled.rod.material.young_modulus)))
-    return Functionals(assembled.chain.half_solve(nodal), nodal[[0, -1]], tuple(bubbles))
+    # Shape functions vanish on the nodes only up to round-off; there, nothing need be asked of the bubbles.
+    along[2:, np.abs(xi) > 1.0 - 1e-12] = 0.0
+    parts = []
+    for element in np.unique(index):
+        members = np.flatnonzero(index == element)
+        parts.append(Part(int(element), members, along[:, None, members] * direction[None, :, members]))
+    return parts
 
 
-def section_loads(assembled: AssembledRod, loads: Sequence[SectionForce]) -> Functionals:
-    """Forces spread evenly over sections, as one functional of shape m = 1.
+def load_parts(assembled: AssembledRod, loads: Sequence[SectionForce], column: int) -> list[Part]:
+    """Forces spread evenly over sections, all in one functional.
 
     An even spread works on the mean displacement alone, which is the coefficient of the constant function.
     """
-    mine = [load for load in loads if load.rod == assembled.rod.name]
-    station = np.array([load.position for load in mine])
-    direction = np.zeros((assembled.fields.count, len(mine)))
-    for number, load in enumerate(mine):
+    parts = []
+    for load in loads:
+        if load.rod != assembled.rod.name:
+            continue
+        direction = np.zeros((assembled.fields.count, 1))
         for component, force in enumerate(frame(assembled.rod.centre_line) @ load.force):
             index = assembled.fields.index(component, 0, 0)
             if index is not None:
-                direction[index, number] = force
-    single = functionals_at(assembled, station, direction)
-    return combined(single, np.ones((len(mine), 1)))
+                direction[index] = force
+        at_load = point_parts(assembled, np.array([load.position]), direction)
+        parts += [replace(part, columns=np.array([column])) for part in at_load]
+    return parts
+
+
+def functionals(assembled: AssembledRod, parts: Sequence[Part], count: int) -> Functionals:
+    """Condense `count` functionals, given by the shares of the elements, and half solve them."""
+    n_fields = assembled.fields.count
+    nodal = np.zeros((len(assembled.borders), n_fields, count))
+    bubbles = []
+    for part in parts:
+        element = assembled.elements[part.element]
+        on_nodes = part.values[:2].copy()
+        inner = np.flatnonzero(part.values[2:].any(axis=(0, 1)))
+        if len(inner):
+            half = element.bubbles.half_solve(part.values[2:, :, inner].reshape(len(element.half_coupling), -1))
+            on_nodes[:, :, inner] -= (element.half_coupling.T @ half).reshape(2, n_fields, -1)
+            bubbles.append((part.element, part.columns[inner], half / np.sqrt(assembled.rod.material.young_modulus)))
+        nodal[part.element : part.element + 2, :, part.columns] += on_nodes
+    return Functionals(assembled.chain.half_solve(nodal), nodal[[0, -1]], tuple(bubbles))
 
 
 def combined(functionals: Functionals, weights: Array) -> Functionals:
@@ -156,17 +190,13 @@ def combined(functionals: Functionals, weights: Array) -> Functionals:
     return Functionals(functionals.nodal @ weights, functionals.ends @ weights, bubbles)
 
 
-def added(first: Functionals, second: Functionals) -> Functionals:
-    """Sums of functionals, one by one; both of the same m."""
-    return Functionals(first.nodal + second.nodal, first.ends + second.ends, first.bubbles + second.bubbles)
-
-
-def compliance(first: Functionals, second: Functionals) -> Array:
-    """first^T K^-1 second, shape (m_first, m_second): displacements of the first under the second as loads."""
-    n_nodal = first.nodal.shape[0] * first.nodal.shape[1]
-    result = first.nodal.reshape(n_nodal, -1).T @ second.nodal.reshape(n_nodal, -1)
-    for index, members, half in first.bubbles:
-        for other_index, other_members, other_half in second.bubbles:
+def compliance(functionals: Functionals) -> Array:
+    """F^T K^-1 F, shape (m, m): the displacement of each functional under each as a load."""
+    n_nodal = functionals.nodal.shape[0] * functionals.nodal.shape[1]
+    nodal = functionals.nodal.reshape(n_nodal, -1)
+    result = nodal.T @ nodal
+    for index, members, half in functionals.bubbles:
+        for other_index, other_members, other_half in functionals.bubbles:
             if index == other_index:
                 result[np.ix_(members, other_members)] += half.T @ other_half
     return np.asarray(result)

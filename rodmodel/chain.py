@@ -19,11 +19,20 @@ Array = NDArray[np.float64]
 class Chain:
     """Factorised stiffness of a rod on its nodes.
 
+    Elimination begins at the clamp (at the start where neither or both ends are clamped), so that the free part, where
+    contact mostly is, comes last: what contact changes or loads is a small part of the work.
+
     Parameters
     ----------
     elements : condensed elements from start to end, for unit modulus
     young_modulus : E of the rod, MPa
     clamped_start, clamped_end : whether all fields of the end section are held at zero
+    previous : chain of the same rod; its factors are taken over as far as its elements are the same
+
+    Attributes
+    ----------
+    elements, nodes : in the order of elimination; clamped nodes are left out
+    factors, links : diagonal and off-diagonal blocks of the factor, for unit modulus
 
     Raises
     ------
@@ -32,27 +41,42 @@ class Chain:
     """
 
     def __init__(
-        self, elements: Sequence[Element], young_modulus: float, clamped_start: bool, clamped_end: bool
+        self,
+        elements: Sequence[Element],
+        young_modulus: float,
+        clamped_start: bool,
+        clamped_end: bool,
+        previous: Chain | None = None,
     ) -> None:
         n_fields = len(elements[0].condensed) // 2
-        n_nodes = len(elements) + 1
-        self.first_free = 1 if clamped_start else 0
-        self.past_free = n_nodes - 1 if clamped_end else n_nodes
-        diagonal = np.zeros((n_nodes, n_fields, n_fields))
-        for index, element in enumerate(elements):
-            diagonal[index] += element.condensed[:n_fields, :n_fields]
-            diagonal[index + 1] += element.condensed[n_fields:, n_fields:]
+        backward = clamped_end and not clamped_start
+        first, second = slice(None, n_fields), slice(n_fields, None)
+        near, far = (second, first) if backward else (first, second)
+        self.elements = tuple(reversed(elements)) if backward else tuple(elements)
         self._root = np.sqrt(young_modulus)
-        self._factors: list[Array] = []
-        self._links: list[Array] = []
-        for node in range(self.first_free, self.past_free):
-            block = diagonal[node]
-            if node > self.first_free:
-                below = elements[node - 1].condensed[n_fields:, :n_fields]
-                link = lower_solve(self._factors[-1], below.T).T
-                block = block - link @ link.T
-                self._links.append(link)
-            self._factors.append(cholesky(block))
+        begin = 1 if clamped_start or clamped_end else 0
+        end = len(elements) if clamped_start and clamped_end else len(elements) + 1
+        steps = range(begin, end)
+        self.nodes = [len(elements) - step if backward else step for step in steps]
+        self.factors: list[Array] = []
+        self.links: list[Array] = []
+        if previous is not None:
+            pairs = list(zip(self.elements, previous.elements, strict=False))
+            same = next((index for index, (own, other) in enumerate(pairs) if own is not other), len(pairs))
+            # The factor of a node knows the elements on both its sides.
+            kept = max(same - begin, 0)
+            self.factors, self.links = previous.factors[:kept], previous.links[: max(kept - 1, 0)]
+        for step in steps[len(self.factors) :]:
+            block = np.zeros((n_fields, n_fields))
+            if step > 0:
+                block += self.elements[step - 1].condensed[far, far]
+            if step < len(elements):
+                block += self.elements[step].condensed[near, near]
+            if step > begin:
+                link = lower_solve(self.factors[-1], self.elements[step - 1].condensed[near, far]).T
+                block -= link @ link.T
+                self.links.append(link)
+            self.factors.append(cholesky(block))
 
     def half_solve(self, loads: Array) -> Array:
         """L^-1 loads with K = L L^T; its inner products are compliances.
@@ -60,23 +84,23 @@ class Chain:
         loads : on the nodes, shape (n_nodes, n_fields, m); those on clamped nodes do not matter
         """
         result = np.zeros_like(loads)
-        for index, factor in enumerate(self._factors):
-            node = self.first_free + index
-            load = loads[node] if index == 0 else loads[node] - self._links[index - 1] @ result[node - 1]
-            result[node] = lower_solve(factor, load)
-        return np.asarray(result / self._root)
+        before: Array | None = None
+        for index, (node, factor) in enumerate(zip(self.nodes, self.factors, strict=True)):
+            load = loads[node]
+            if before is not None:
+                load = load - self.links[index - 1] @ before
+            elif not load.any():
+                continue
+            before = lower_solve(factor, load)
+            np.divide(before, self._root, out=result[node])
+        return result
 
     def back_solve(self, half: Array) -> Array:
         """L^-T half: displacements of the nodes, zero on clamped ones, shape (n_nodes, n_fields, m)."""
         result = np.zeros_like(half)
-        for index in reversed(range(len(self._factors))):
-            node = self.first_free + index
-            load = half[node]
-            if index + 1 < len(self._factors):
-                load = load - self._links[index].T @ result[node + 1]
-            result[node] = transposed_solve(self._factors[index], load)
+        for index in reversed(range(len(self.nodes))):
+            load = half[self.nodes[index]]
+            if index + 1 < len(self.nodes):
+                load = load - self.links[index].T @ result[self.nodes[index + 1]]
+            result[self.nodes[index]] = transposed_solve(self.factors[index], load)
         return np.asarray(result / self._root)
-
-    def solve(self, loads: Array) -> Array:
-        """K^-1 loads, shape (n_nodes, n_fields, m)."""
-        return self.back_solve(self.half_solve(loads))

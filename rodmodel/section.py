@@ -69,24 +69,42 @@ class Fields:
         return int(found[0]) if len(found) else None
 
 
-def section_functions(section: Rectangle, chosen: Fields, x: Array, y: Array) -> tuple[Array, Array, Array]:
-    """Values, x-slopes and y-slopes of every field's scalar function, each of shape (n_fields, n_points).
+def section_values(section: Rectangle, chosen: Fields, x: Array, y: Array) -> Array:
+    """Values of every field's scalar function at section points, shape (n_fields, n_points).
 
     Scaled to mean square one over the section, so that the first one is 1 and its coefficient the mean displacement.
     """
-    degree = chosen.level
-    xi, eta = 2.0 * np.asarray(x) / section.width, 2.0 * np.asarray(y) / section.height
-    scale = np.sqrt(2.0 * np.arange(degree + 1) + 1.0)[:, None]
-    along_x, along_y = scale * legendre(degree, xi), scale * legendre(degree, eta)
-    slope_x = scale * legendre_derivatives(degree, xi) * (2.0 / section.width)
-    slope_y = scale * legendre_derivatives(degree, eta) * (2.0 / section.height)
+    along_x, along_y = _scaled_legendre(section, chosen, x, y)
     _, i, j = chosen.table
-    return along_x[i] * along_y[j], slope_x[i] * along_y[j], along_x[i] * slope_y[j]
+    return np.asarray(along_x[i] * along_y[j])
+
+
+def section_slopes(section: Rectangle, chosen: Fields, x: Array, y: Array) -> tuple[Array, Array]:
+    """Derivatives by x and by y of `section_values`, each of shape (n_fields, n_points)."""
+    along_x, along_y = _scaled_legendre(section, chosen, x, y)
+    scale = _mean_square_one(chosen.level)
+    slope_x = scale * legendre_derivatives(chosen.level, 2.0 * x / section.width) * (2.0 / section.width)
+    slope_y = scale * legendre_derivatives(chosen.level, 2.0 * y / section.height) * (2.0 / section.height)
+    _, i, j = chosen.table
+    return slope_x[i] * along_y[j], along_x[i] * slope_y[j]
+
+
+def _scaled_legendre(section: Rectangle, chosen: Fields, x: Array, y: Array) -> tuple[Array, Array]:
+    scale = _mean_square_one(chosen.level)
+    return (
+        scale * legendre(chosen.level, 2.0 * x / section.width),
+        scale * legendre(chosen.level, 2.0 * y / section.height),
+    )
+
+
+def _mean_square_one(degree: int) -> Array:
+    return np.asarray(np.sqrt(2.0 * np.arange(degree + 1) + 1.0)[:, None])
 
 
 def strain_operators(section: Rectangle, chosen: Fields, x: Array, y: Array) -> tuple[Array, Array]:
     """B_0 and B_1 at section points, each of shape (n_points, 6, n_fields)."""
-    value, slope_x, slope_y = section_functions(section, chosen, x, y)
+    value = section_values(section, chosen, x, y)
+    slope_x, slope_y = section_slopes(section, chosen, x, y)
     is_u, is_v, is_w = (chosen.indices(component) for component in (U, V, W))
     b0 = np.zeros((value.shape[1], 6, chosen.count))
     b1 = np.zeros_like(b0)

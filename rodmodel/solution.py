@@ -20,8 +20,8 @@ from rodmodel.section import (
     V,
     W,
     elasticity_matrix,
-    section_functions,
     section_quadrature,
+    section_values,
     strain_operators,
 )
 from rodmodel.system import ContactSystem
@@ -95,7 +95,7 @@ class Solution:
     def strain_energy(self) -> float:
         """Elastic energy of all rods, half the work of loads and contact forces on the final state, N mm."""
         loads = [self.system.total_load(rod.name, self.force) for rod in self.scene.rods]
-        return 0.5 * sum(float(compliance(load, load)[0, 0]) for load in loads)
+        return 0.5 * sum(float(compliance(load)[0, 0]) for load in loads)
 
     def displacement(self, rod: str, station: Array) -> Array:
         """Displacement of the centre line, global components, mm, shape (3, n); station in mm along the rod."""
@@ -106,7 +106,7 @@ class Solution:
         """Displacement at points (x, y, s) of a rod, global components, mm; shape (3, n) to (3, n)."""
         assembled = self.system.rods[rod]
         psi, _ = self._axial(assembled, points[2])
-        values, _, _ = section_functions(assembled.rod.section, assembled.fields, points[0], points[1])
+        values = section_values(assembled.rod.section, assembled.fields, points[0], points[1])
         local = np.array([(values * psi)[assembled.fields.indices(c)].sum(axis=0) for c in (U, V, W)])
         return np.asarray(frame(assembled.rod.centre_line).T @ local)
 

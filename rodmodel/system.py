@@ -13,12 +13,13 @@ from rodmodel.assembly import (
     AssembledRod,
     ElementStore,
     Functionals,
-    added,
+    Part,
     assembled_rod,
     combined,
     compliance,
-    functionals_at,
-    section_loads,
+    functionals,
+    load_parts,
+    point_parts,
 )
 from rodmodel.pairing import (
     ContactGrid,
@@ -28,7 +29,7 @@ from rodmodel.pairing import (
     opposite_stations,
     width_across,
 )
-from rodmodel.section import Fields, section_functions
+from rodmodel.section import Fields, section_values
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -46,9 +47,8 @@ class ContactSystem:
     rods : assembled rods by name
     grids : contact points by pair name; the points of all pairs follow one another in one long vector
     points : by pair name, which part of the vector is the pair's
-    gaps : by rod name, the functionals -u_n of its contact points (n the outward normal of its own face) and their
-        places in the vector
-    loads : by rod name, the given loads
+    functionals : by rod name, -u_n of its contact points (n the outward normal of its own face), and last its loads
+    places : by rod name, where in the vector its contact points are
     compliance : C, mm/N, shape (n, n)
     initial_gap : gap under the given loads without contact, mm, shape (n,)
     spring : c_n w, N/mm, shape (n,)
@@ -58,16 +58,16 @@ class ContactSystem:
     rods: Mapping[str, AssembledRod]
     grids: Mapping[str, ContactGrid]
     points: Mapping[str, slice]
-    gaps: Mapping[str, tuple[Functionals, IntArray]]
-    loads: Mapping[str, Functionals]
+    functionals: Mapping[str, Functionals]
+    places: Mapping[str, IntArray]
     compliance: Array
     initial_gap: Array
     spring: Array
 
     def total_load(self, rod: str, force: Array) -> Functionals:
         """Given loads and contact forces on a rod as one functional; its coefficients are the solution."""
-        gap, places = self.gaps[rod]
-        return added(self.loads[rod], combined(gap, force[places][:, None]))
+        weights = np.append(force[self.places[rod]], 1.0)
+        return combined(self.functionals[rod], weights[:, None])
 
 
 def contact_system(
@@ -84,14 +84,15 @@ def contact_system(
     for pair in scene.contacts:
         gap[points[pair.name]] = pair.gap
         spring[points[pair.name]] = pair.penalty * grids[pair.name].weight.ravel()
-    gaps, loads = {}, {}
+    found, places = {}, {}
     for name, assembled in rods.items():
-        gaps[name] = _gap_functionals(scene, assembled, grids, points)
-        loads[name] = section_loads(assembled, scene.loads)
-        functionals, places = gaps[name]
-        matrix[np.ix_(places, places)] += compliance(functionals, functionals)
-        gap[places] += compliance(functionals, loads[name])[:, 0]
-    return ContactSystem(scene, rods, grids, points, gaps, loads, matrix, gap, spring)
+        parts, place = _gap_parts(scene, assembled, grids, points)
+        parts += load_parts(assembled, scene.loads, column=len(place))
+        found[name], places[name] = functionals(assembled, parts, count=len(place) + 1), place
+        response = compliance(found[name])
+        matrix[np.ix_(place, place)] += response[:-1, :-1]
+        gap[place] += response[:-1, -1]
+    return ContactSystem(scene, rods, grids, points, found, places, matrix, gap, spring)
 
 
 def _grid(scene: Scene, pair: ContactPair, rods: Mapping[str, AssembledRod]) -> ContactGrid:
@@ -109,9 +110,9 @@ def _grid(scene: Scene, pair: ContactPair, rods: Mapping[str, AssembledRod]) -> 
     return contact_grid(borders, width_across(scene, pair), n_along, n_across + 1 - n_across % 2, symmetric)
 
 
-def _gap_functionals(
+def _gap_parts(
     scene: Scene, assembled: AssembledRod, grids: Mapping[str, ContactGrid], points: Mapping[str, slice]
-) -> tuple[Functionals, IntArray]:
+) -> tuple[list[Part], IntArray]:
     """-u_n at all contact points on one rod, n being the outward normal of the face that they lie on."""
     rod, fields = assembled.rod, assembled.fields
     stations, directions, places = [np.empty(0)], [np.empty((fields.count, 0))], [np.empty(0, dtype=np.int64)]
@@ -127,12 +128,12 @@ def _gap_functionals(
             stations.append(station)
             directions.append(np.tile(across, grid.station.size))
             places.append(np.arange(points[pair.name].start, points[pair.name].stop))
-    functionals = functionals_at(assembled, np.concatenate(stations), np.concatenate(directions, axis=1))
-    return functionals, np.concatenate(places)
+    parts = point_parts(assembled, np.concatenate(stations), np.concatenate(directions, axis=1))
+    return parts, np.concatenate(places)
 
 
 def inward_direction(assembled: AssembledRod, face: Face, x: Array, y: Array) -> Array:
     """Value of every field in the direction -n of a face at section points, shape (n_fields, n_points)."""
     axes = face_axes(assembled.rod, face)
-    values, _, _ = section_functions(assembled.rod.section, assembled.fields, x, y)
+    values = section_values(assembled.rod.section, assembled.fields, x, y)
     return np.where((assembled.fields.table[0] == axes.axis)[:, None], -axes.sign * values, 0.0)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import rodmodel as rm
-from rodmodel.assembly import ElementStore, assembled_rod, coefficients, compliance, functionals_at
+from rodmodel.assembly import ElementStore, assembled_rod, coefficients, compliance, functionals, point_parts
 from rodmodel.axial import shape_functions
 from rodmodel.section import Fields, section_stiffness
 from rodmodel.stiffness import stiffness_terms
@@ -45,8 +45,7 @@ def test_compliance_is_that_of_the_dense_stiffness(scene: rm.Scene) -> None:
     direction = rng.standard_normal((fields.count, len(station)))
     assembled = assembled_rod(scene, scene.rods[0], fields, BORDERS, ElementStore(order))
 
-    functionals = functionals_at(assembled, station, direction)
-    found = compliance(functionals, functionals)
+    found = compliance(functionals(assembled, point_parts(assembled, station, direction), len(station)))
 
     inverse = dense_inverse(scene, fields, order, BORDERS)
     rows = np.zeros((len(inverse), len(station)))
@@ -66,15 +65,30 @@ def test_coefficients_answer_the_load_they_were_solved_for(scene: rm.Scene) -> N
     station = np.array([95.0])
     direction = np.random.default_rng(3).standard_normal((fields.count, 1))
     assembled = assembled_rod(scene, scene.rods[0], fields, BORDERS, ElementStore(order))
-    load = functionals_at(assembled, station, direction)
+    load = functionals(assembled, point_parts(assembled, station, direction), 1)
 
     values = coefficients(assembled, load)
 
     index, xi = assembled.locate(station)
     moved = shape_functions(order, xi)[:, 0] @ values[index[0]] @ direction[:, 0]
-    assert moved == pytest.approx(compliance(load, load)[0, 0], rel=1e-10)
+    assert moved == pytest.approx(compliance(load)[0, 0], rel=1e-10)
     assert np.abs(values[0, 0]).max() == 0.0  # the clamp
     np.testing.assert_array_equal(values[:-1, 1], values[1:, 0])  # continuity
+
+
+@pytest.mark.parametrize("clamps", [("start",), ("end",), ("start", "end")])
+def test_factors_taken_over_from_another_chain_change_nothing(scene: rm.Scene, clamps: tuple[str, ...]) -> None:
+    held = rm.Scene("held", scene.rods, tuple(rm.Clamp("bar", end) for end in clamps), (), ())
+    fields, store = Fields(2), ElementStore(3)
+    station = np.array([12.0, 71.0, 95.0])
+    direction = np.random.default_rng(4).standard_normal((fields.count, len(station)))
+    for borders in (BORDERS, np.array([0.0, 40.0, 90.0, 130.0]), np.array([0.0, 35.0, 90.0, 130.0]), BORDERS):
+        reused = assembled_rod(held, held.rods[0], fields, borders, store)
+        fresh = assembled_rod(held, held.rods[0], fields, borders, ElementStore(3))
+        answers = [
+            compliance(functionals(rod, point_parts(rod, station, direction), len(station))) for rod in (reused, fresh)
+        ]
+        np.testing.assert_allclose(answers[0], answers[1], rtol=1e-12)
 
 
 def test_a_rod_without_a_clamp_has_no_factor(scene: rm.Scene) -> None:

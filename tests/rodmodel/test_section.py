@@ -10,9 +10,10 @@ from rodmodel.section import (
     V,
     W,
     elasticity_matrix,
-    section_functions,
     section_quadrature,
+    section_slopes,
     section_stiffness,
+    section_values,
     strain_operators,
 )
 
@@ -29,7 +30,7 @@ def test_a_level_has_the_complete_polynomials_of_pascals_triangle(level: int, co
 def test_functions_are_orthonormal_over_the_section(level: int) -> None:
     fields = Fields(level)
     x, y, weight = section_quadrature(SECTION, level)
-    values, _, _ = section_functions(SECTION, fields, x, y)
+    values = section_values(SECTION, fields, x, y)
     one = values[fields.indices(U)]
     gram = (one * weight) @ one.T / (SECTION.width * SECTION.height)
     np.testing.assert_allclose(gram, np.eye(len(gram)), atol=1e-12)  # round-off at degree 24
@@ -37,10 +38,10 @@ def test_functions_are_orthonormal_over_the_section(level: int) -> None:
 
 def test_slopes_are_the_derivatives_of_the_values() -> None:
     fields, x, y, step = Fields(5), np.array([1.0, -3.0]), np.array([4.0, 9.0]), 1e-5
-    _, slope_x, slope_y = section_functions(SECTION, fields, x, y)
+    slope_x, slope_y = section_slopes(SECTION, fields, x, y)
     for slope, dx, dy in ((slope_x, step, 0.0), (slope_y, 0.0, step)):
-        ahead, _, _ = section_functions(SECTION, fields, x + dx, y + dy)
-        behind, _, _ = section_functions(SECTION, fields, x - dx, y - dy)
+        ahead = section_values(SECTION, fields, x + dx, y + dy)
+        behind = section_values(SECTION, fields, x - dx, y - dy)
         # central differences: step^2 times a third derivative of order 1
         np.testing.assert_allclose((ahead - behind) / (2.0 * step), slope, atol=1e-7)
 
@@ -49,10 +50,10 @@ def test_slopes_are_the_derivatives_of_the_values() -> None:
 def test_mirrored_fields_are_those_that_reflection_leaves(mirror_x: bool, mirror_y: bool) -> None:
     fields = Fields(5, mirror_x, mirror_y)
     x, y = np.array([2.0, 5.0]), np.array([3.0, 7.0])
-    values, _, _ = section_functions(SECTION, fields, x, y)
+    values = section_values(SECTION, fields, x, y)
     for mirrored, across, point in ((mirror_x, U, (-x, y)), (mirror_y, V, (x, -y))):
         if mirrored:
-            reflected, _, _ = section_functions(SECTION, fields, *point)
+            reflected = section_values(SECTION, fields, *point)
             sign = np.where(fields.table[0] == across, -1.0, 1.0)[:, None]
             np.testing.assert_allclose(reflected, sign * values, atol=1e-13)
 
