@@ -162,6 +162,7 @@ def test_a_case_that_failed_is_shown_with_its_reason_beside_the_others(
     assert "pass" in shown
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("verdict", ["fail", "not resolved"])
 def test_report_shows_verdicts_and_fails_on_none_of_them(
     verdict: str, case_run: CaseRun, solved, tmp_path: Path, capsys: pytest.CaptureFixture[str]
@@ -173,6 +174,7 @@ def test_report_shows_verdicts_and_fails_on_none_of_them(
     assert verdict in (tmp_path / "index.html").read_text()
 
 
+@pytest.mark.slow
 def test_report_exits_with_1_where_a_case_failed_to_run(case_run: CaseRun, solved, tmp_path: Path) -> None:
     solved(Failure(case_run.case, "the mesh is singular"), passing(case_run))
 

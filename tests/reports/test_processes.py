@@ -68,6 +68,7 @@ def test_a_killed_process_says_so(work: ModuleType) -> None:
         in_own_process(work.killed, 0)
 
 
+@pytest.mark.slow
 def test_a_case_that_fails_does_not_stop_the_next() -> None:
     case = load_case("two-cantilevers-e50-g0")
     unsupported = replace(case, scene=replace(case.scene, supports=()))
