@@ -49,7 +49,8 @@ def stretches_in_contact(system: ContactSystem, force: Array) -> tuple[Stretch, 
     """
     stretches = []
     for pair, grid in system.grids.items():
-        station, length = grid.station.ravel(), np.repeat(np.diff(grid.borders), grid.station.shape[1])
+        station = grid.station.ravel()
+        length = np.repeat(grid.station[:, -1] - grid.station[:, 0], grid.station.shape[1])
         closed = np.flatnonzero(force[system.points[pair]].reshape(grid.weight.shape)[:, :, grid.middle] > 0.0)
         opening = np.diff(station[closed]) >= length[closed[1:]]
         for run in np.split(closed, np.flatnonzero(opening) + 1) if len(closed) else []:
@@ -91,7 +92,7 @@ def edge_pressures(system: ContactSystem, stretches: Sequence[Stretch], edges: S
     held = np.zeros(len(system.spring), dtype=bool)
     for stretch in stretches:
         grid = system.grids[stretch.pair]
-        middles = 0.5 * (grid.borders[:-1] + grid.borders[1:])
+        middles = 0.5 * (grid.station[:, 0] + grid.station[:, -1])
         inside = (middles > stretch.start) & (middles < stretch.end)
         part = held[system.points[stretch.pair]].reshape(grid.weight.shape)
         part[inside] = True
@@ -100,11 +101,9 @@ def edge_pressures(system: ContactSystem, stretches: Sequence[Stretch], edges: S
     for number, edge in enumerate(edges):
         grid, stretch = system.grids[edge.pair], stretches[edge.stretch]
         pressure = force[system.points[edge.pair]].reshape(grid.weight.shape) / grid.weight
-        border = stretch.end if edge.outward > 0 else stretch.start
-        nearest = int(np.abs(grid.borders - border).argmin())
-        pressures[number] = (
-            pressure[nearest - 1, -1, grid.middle] if edge.outward > 0 else pressure[nearest, 0, grid.middle]
-        )
+        side, border = (-1, stretch.end) if edge.outward > 0 else (0, stretch.start)
+        interval = int(np.abs(grid.station[:, side] - border).argmin())
+        pressures[number] = pressure[interval, side, grid.middle]
     return pressures
 
 
@@ -117,13 +116,11 @@ class EdgeSearch:
     outcome : 'converged', 'stagnated', or 'topology': an edge ran into the zone's end or into another stretch
     positions : last position of every edge, mm along its pair's first rod, shape (n_edges,)
     steps : every position tried, shape (n_solutions, n_edges)
-    system : contact system with the borders at `positions`
     """
 
     outcome: str
     positions: Array
     steps: Array
-    system: ContactSystem
 
 
 def find_edges(
@@ -141,7 +138,7 @@ def find_edges(
     Parameters
     ----------
     positions : first guess, mm, shape (n_edges,)
-    system_at : makes the contact system with the borders at given positions
+    system_at : makes a contact system, with points in the stretches at least, with the borders at given positions
     """
     outward = np.array([edge.outward for edge in edges])
     zones = np.array([scene.contact(edge.pair).zone for edge in edges])
@@ -149,14 +146,13 @@ def find_edges(
     tried: list[Array] = []
     values: list[Array] = []
 
-    def residual(at: Array) -> tuple[Array, ContactSystem]:
-        system = system_at(at)
+    def residual(at: Array) -> Array:
         tried.append(at)
-        values.append(edge_pressures(system, moved(stretches, edges, at), edges))
-        return values[-1], system
+        values.append(edge_pressures(system_at(at), moved(stretches, edges, at), edges))
+        return values[-1]
 
     positions = _not_too_short(scene, stretches, edges, positions)
-    value, system = residual(positions)
+    value = residual(positions)
     jacobian = np.zeros((len(edges), len(edges)))
     bracket = Bracket().tightened(outward[0] * positions[0], value[0])
     outcome = "stagnated"
@@ -182,12 +178,12 @@ def find_edges(
         if np.abs(change).max() < EDGE_TOLERANCE and first >= len(edges):
             outcome = "converged"
             break
-        new_value, system = residual(new)
+        new_value = residual(new)
         if change.any():
             jacobian = jacobian + np.outer(new_value - value - jacobian @ change, change) / (change @ change)
         positions, value = new, new_value
         bracket = bracket.tightened(outward[0] * positions[0], value[0])
-    return EdgeSearch(outcome, positions, np.array(tried), system)
+    return EdgeSearch(outcome, positions, np.array(tried))
 
 
 def _newton_step(jacobian: Array, value: Array, at_shortest: BoolArray) -> Array:

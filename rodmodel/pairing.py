@@ -103,13 +103,11 @@ class ContactGrid:
 
     Attributes
     ----------
-    borders : interval borders along the first rod, mm, shape (n_intervals + 1,)
     station : along the first rod, mm, shape (n_intervals, n_along)
     across : mm, ascending, shape (n_across,); from the middle on where the scene is symmetric about it
     weight : share of the face, mm^2, shape (n_intervals, n_along, n_across); for the full face
     """
 
-    borders: Array
     station: Array
     across: Array
     weight: Array
@@ -128,10 +126,11 @@ class ContactGrid:
 
 
 def contact_grid(
-    borders: Array, width: tuple[float, float], n_along: int, n_across: int, symmetric: bool
+    intervals: Array, width: tuple[float, float], n_along: int, n_across: int, symmetric: bool
 ) -> ContactGrid:
-    """Contact points between `borders` (mm, along the first rod) over the shared `width` (mm).
+    """Contact points in intervals along the first rod over the shared `width` (mm).
 
+    intervals : start and end of each, mm, shape (n_intervals, 2)
     n_across : odd, so that one point lies in the middle
     symmetric : carry only the points from the middle on, the outer ones with twice their weight
     """
@@ -146,7 +145,7 @@ def contact_grid(
             np.where(np.arange(n_across) > middle, 2.0, 1.0)[middle:] * weight_across[middle:],
         )
     across = 0.5 * (low + high) + half_width * eta
-    half_length = 0.5 * np.diff(borders)
-    station = 0.5 * (borders[:-1] + borders[1:])[:, None] + half_length[:, None] * xi
+    half_length = 0.5 * (intervals[:, 1] - intervals[:, 0])
+    station = intervals.mean(axis=1)[:, None] + half_length[:, None] * xi
     weight = half_length[:, None, None] * weight_along[:, None] * (half_width * weight_across)
-    return ContactGrid(borders, station, across, weight, symmetric)
+    return ContactGrid(station, across, weight, symmetric)

@@ -20,6 +20,9 @@ from rodmodel.system import ContactSystem, contact_system
 
 Array = NDArray[np.float64]
 
+# Makes the contact system on given borders, with points in all zones or in parts of them.
+SystemOn = Callable[[dict[str, Array], dict[str, Array] | None], ContactSystem]
+
 # How often the search may start anew because stretches appeared, merged or vanished.
 MOST_TOPOLOGIES = 3
 
@@ -46,8 +49,8 @@ def solve(scene: Scene, level: int = 5, order: int = 6) -> Solution:
     fields = symmetric_fields(scene, level)
     store = ElementStore(order)
 
-    def system_on(borders: dict[str, Array]) -> ContactSystem:
-        return contact_system(scene, fields, borders, store)
+    def system_on(borders: dict[str, Array], within: dict[str, Array] | None = None) -> ContactSystem:
+        return contact_system(scene, fields, borders, store, within)
 
     natural = {rod.name: natural_borders(scene, rod) for rod in scene.rods}
     system = system_on(natural)
@@ -94,7 +97,7 @@ def moved_contact(
     scene: Scene,
     natural: dict[str, Array],
     system: ContactSystem,
-    system_on: Callable[[dict[str, Array]], ContactSystem],
+    system_on: SystemOn,
 ) -> MovedContact:
     """Find the stretches in contact on the natural borders, move borders onto their edges, and solve on those.
 
@@ -106,8 +109,8 @@ def moved_contact(
         edges, positions = moving_edges(scene, stretches)
         if not edges:
             return MovedContact("converged", solutions, stretches, system, force)
-        search = _search(scene, natural, stretches, edges, positions, system_on)
-        system = search.system
+        search, borders = _search(scene, natural, stretches, edges, positions, system_on)
+        system = system_on(borders, None)
         force = unilateral_contact(system.compliance, system.initial_gap, system.spring)
         solutions += len(search.steps) + 1
         found = stretches_in_contact(system, force)
@@ -125,8 +128,19 @@ def _search(
     stretches: Sequence[Stretch],
     edges: Sequence[Edge],
     positions: Array,
-    system_on: Callable[[dict[str, Array]], ContactSystem],
-) -> EdgeSearch:
-    """One search with the borders that follow each edge chosen beforehand."""
+    system_on: SystemOn,
+) -> tuple[EdgeSearch, dict[str, Array]]:
+    """One search with the borders that follow each edge chosen beforehand, and the borders it ended with."""
     plan = border_plan(scene, natural, edges, positions)
-    return find_edges(scene, stretches, edges, positions, lambda at: system_on(placed_borders(scene, plan, edges, at)))
+
+    def system_at(at: Array) -> ContactSystem:
+        # Only what is held in contact tells where the edges are.
+        held = moved(stretches, edges, at)
+        within = {
+            pair.name: np.array([[s.start, s.end] for s in held if s.pair == pair.name]).reshape(-1, 2)
+            for pair in scene.contacts
+        }
+        return system_on(placed_borders(scene, plan, edges, at), within)
+
+    search = find_edges(scene, stretches, edges, positions, system_at)
+    return search, placed_borders(scene, plan, edges, search.positions)

@@ -71,11 +71,20 @@ class ContactSystem:
 
 
 def contact_system(
-    scene: Scene, fields: Mapping[str, Fields], borders: Mapping[str, Array], store: ElementStore
+    scene: Scene,
+    fields: Mapping[str, Fields],
+    borders: Mapping[str, Array],
+    store: ElementStore,
+    within: Mapping[str, Array] | None = None,
 ) -> ContactSystem:
-    """Assemble the rods on `borders` (mm, by rod name) and reduce them to their contact points."""
+    """Assemble the rods on `borders` (mm, by rod name) and reduce them to their contact points.
+
+    within : by pair name, the parts of its zone that get contact points (start and end, mm along the first rod, shape
+        (n, 2)); the whole of every zone if not given
+    """
     rods = {rod.name: assembled_rod(scene, rod, fields[rod.name], borders[rod.name], store) for rod in scene.rods}
-    grids = {pair.name: _grid(scene, pair, rods) for pair in scene.contacts}
+    whole = {pair.name: np.array([pair.zone]) for pair in scene.contacts}
+    grids = {pair.name: _grid(scene, pair, rods, (within or whole)[pair.name]) for pair in scene.contacts}
     counts = [grid.weight.size for grid in grids.values()]
     ends = np.cumsum([0, *counts])
     points = {name: slice(ends[i], ends[i + 1]) for i, name in enumerate(grids)}
@@ -95,7 +104,7 @@ def contact_system(
     return ContactSystem(scene, rods, grids, points, found, places, matrix, gap, spring)
 
 
-def _grid(scene: Scene, pair: ContactPair, rods: Mapping[str, AssembledRod]) -> ContactGrid:
+def _grid(scene: Scene, pair: ContactPair, rods: Mapping[str, AssembledRod], within: Array) -> ContactGrid:
     """Contact points between the borders of both rods: enough of them to integrate the penalty energy exactly."""
     first, second = rods[pair.first.rod], rods[pair.second.rod]
     start, end = pair.zone
@@ -103,11 +112,14 @@ def _grid(scene: Scene, pair: ContactPair, rods: Mapping[str, AssembledRod]) -> 
     inside = borders[(borders > start + SAME_BORDER) & (borders < end - SAME_BORDER)]
     borders = np.concatenate([[start], inside, [end]])
     borders = borders[np.concatenate([[True], np.diff(borders) > SAME_BORDER])]
+    intervals = np.column_stack([borders[:-1], borders[1:]])
+    middle = intervals.mean(axis=1)[:, None]
+    intervals = intervals[((within[:, 0] < middle) & (middle < within[:, 1])).any(axis=1)]
     n_across = max(first.fields.level, second.fields.level) + 2
     across_is_x = face_axes(first.rod, pair.first.face).axis == 1
     symmetric = first.fields.mirror_x if across_is_x else first.fields.mirror_y
     n_along = max(first.order, second.order) + 2
-    return contact_grid(borders, width_across(scene, pair), n_along, n_across + 1 - n_across % 2, symmetric)
+    return contact_grid(intervals, width_across(scene, pair), n_along, n_across + 1 - n_across % 2, symmetric)
 
 
 def _gap_parts(

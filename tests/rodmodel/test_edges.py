@@ -29,10 +29,10 @@ LEVEL, ORDER = 3, 5
 
 
 @pytest.fixture(scope="module")
-def search() -> Callable[[str, float, float], tuple[Scene, EdgeSearch]]:
-    """Search from a guessed stretch."""
+def search() -> Callable[[str, float, float], tuple[Scene, EdgeSearch, Callable[[np.ndarray], ContactSystem]]]:
+    """Search from a guessed stretch; gives the scene, the search and what makes a system with given edges."""
 
-    def run(name: str, start: float, end: float) -> tuple[Scene, EdgeSearch]:
+    def run(name, start, end):
         scene = load_case(f"two-cantilevers-{name}").scene
         fields, store = symmetric_fields(scene, LEVEL), ElementStore(ORDER)
         borders = {rod.name: natural_borders(scene, rod) for rod in scene.rods}
@@ -43,14 +43,14 @@ def search() -> Callable[[str, float, float], tuple[Scene, EdgeSearch]]:
         def system_at(at: np.ndarray) -> ContactSystem:
             return contact_system(scene, fields, placed_borders(scene, plan, edges, at), store)
 
-        return scene, find_edges(scene, stretches, edges, positions, system_at)
+        return scene, find_edges(scene, stretches, edges, positions, system_at), system_at
 
     return run
 
 
 @pytest.mark.parametrize("guess", [212.0, 220.0, 226.0, 235.0])
 def test_one_edge_is_found_from_any_guess(search, guess: float) -> None:
-    _, found = search("e50-g0", 200.0, guess)
+    _, found, _ = search("e50-g0", 200.0, guess)
     assert found.outcome == "converged"
     assert found.positions[0] == pytest.approx(search("e50-g0", 200.0, 221.0)[1].positions[0], abs=0.02)
     assert len(found.steps) <= 8
@@ -58,34 +58,32 @@ def test_one_edge_is_found_from_any_guess(search, guess: float) -> None:
 
 @pytest.mark.parametrize("guess", [(234.0, 266.0), (240.0, 258.0), (238.0, 262.0)])
 def test_two_edges_are_found_together(search, guess: tuple[float, float]) -> None:
-    _, found = search("e20-g0", *guess)
+    _, found, _ = search("e20-g0", *guess)
     assert found.outcome == "converged"
     assert found.positions == pytest.approx(search("e20-g0", 237.0, 261.0)[1].positions, abs=0.03)
     assert len(found.steps) <= 9
 
 
-def test_pressure_vanishes_on_the_edge_and_pulls_beyond_it(search) -> None:
-    scene, found = search("e50-g0", 200.0, 225.0)
-    stretches = (Stretch("overlap", 200.0, float(found.positions[0])),)
-    edges, _ = moving_edges(scene, stretches)
-    assert abs(edge_pressures(found.system, stretches, edges)[0]) < 0.02  # 1.5 MPa a millimetre times 0.01 mm
-    _, longer = search("e50-g0", 200.0, 235.0)
-    first_guess = (Stretch("overlap", 200.0, 235.0),)
-    assert longer.steps[0, 0] == 235.0
-    assert edges == moving_edges(scene, first_guess)[0]
+def test_pressure_vanishes_on_the_edge_pushes_before_and_pulls_beyond_it(search) -> None:
+    scene, found, system_at = search("e50-g0", 200.0, 225.0)
+    pressures = []
+    for shift in (-2.0, 0.0, 2.0):
+        at = found.positions + shift
+        stretches = (Stretch("overlap", 200.0, float(at[0])),)
+        edges, _ = moving_edges(scene, stretches)
+        pressures.append(edge_pressures(system_at(at), stretches, edges)[0])
+    assert pressures[0] > 1.0
+    assert abs(pressures[1]) < 0.02  # 1.5 MPa a millimetre times 0.01 mm
+    assert pressures[2] < -1.0
 
 
 def test_contact_force_hardly_depends_on_the_border(search) -> None:
     """Held elements: where the mean pressure vanishes the force is stationary; the middle's edge is close to that."""
-    scene, found = search("e50-g0", 200.0, 225.0)
+    _, found, system_at = search("e50-g0", 200.0, 225.0)
     edge = float(found.positions[0])
-    fields, store = symmetric_fields(scene, LEVEL), ElementStore(ORDER)
-    borders = {rod.name: natural_borders(scene, rod) for rod in scene.rods}
-    edges, positions = moving_edges(scene, (Stretch("overlap", 200.0, edge),))
-    plan = border_plan(scene, borders, edges, positions)
     forces = []
     for shift in (-1.0, 0.0, 1.0):
-        system = contact_system(scene, fields, placed_borders(scene, plan, edges, positions + shift), store)
+        system = system_at(found.positions + shift)
         grid = system.grids["overlap"]
         held = np.zeros(grid.weight.shape, dtype=bool)
         held[grid.station[:, 0] < edge + shift - 1e-6] = True
@@ -94,7 +92,7 @@ def test_contact_force_hardly_depends_on_the_border(search) -> None:
 
 
 def test_ends_of_the_zone_are_not_edges(search) -> None:
-    scene, _ = search("e50-g0", 200.0, 225.0)
+    scene, _, _ = search("e50-g0", 200.0, 225.0)
     edges, positions = moving_edges(scene, (Stretch("overlap", 200.0, 300.0),))
     assert edges == ()
     assert len(positions) == 0

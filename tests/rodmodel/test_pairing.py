@@ -61,7 +61,7 @@ def test_crossing_rods_are_refused(scene: Scene) -> None:
 
 @pytest.mark.parametrize("symmetric", [False, True])
 def test_contact_points_weigh_the_whole_face(symmetric: bool) -> None:
-    grid = contact_grid(np.array([0.0, 10.0, 40.0]), (-3.0, 3.0), 6, 5, symmetric)
+    grid = contact_grid(np.array([[0.0, 10.0], [10.0, 40.0]]), (-3.0, 3.0), 6, 5, symmetric)
     station, across = grid.flat()
     weight = grid.weight.ravel()
     assert weight.sum() == pytest.approx(40.0 * 6.0)
