@@ -8,7 +8,7 @@ from __future__ import annotations
 from functools import lru_cache
 
 import numpy as np
-from numpy.polynomial.legendre import leggauss, legvander
+from numpy.polynomial.legendre import leggauss
 from numpy.typing import NDArray
 from scipy.special import roots_jacobi
 
@@ -16,8 +16,18 @@ Array = NDArray[np.float64]
 
 
 def legendre(degree: int, xi: Array) -> Array:
-    """Legendre polynomials P_0..P_degree at xi, shape (degree + 1, n)."""
-    return np.ascontiguousarray(legvander(np.asarray(xi, dtype=float), degree).T)
+    """Legendre polynomials P_0..P_degree at xi, shape (degree + 1, n).
+
+    By n P_n = (2 n - 1) xi P_{n-1} - (n - 1) P_{n-2}, Abramowitz and Stegun 22.7.10. numpy's `legvander` is the same
+    recurrence behind an overhead that shows at a few points.
+    """
+    values = np.empty((degree + 1, len(xi)))
+    values[0] = 1.0
+    if degree > 0:
+        values[1] = xi
+    for n in range(2, degree + 1):
+        values[n] = ((2 * n - 1) / n) * xi * values[n - 1] - ((n - 1) / n) * values[n - 2]
+    return values
 
 
 def legendre_derivatives(degree: int, xi: Array) -> Array:
@@ -60,12 +70,20 @@ def axial_matrices(order: int) -> tuple[Array, Array, Array]:
 
     On an element of length L they stand for L/2 M_00, M_01 and 2/L M_11.
     """
-    xi, weight = leggauss(order + 1)
+    xi, weight = gauss(order + 1)
     values, slopes = shape_functions(order, xi), shape_function_slopes(order, xi)
     matrices = (values * weight) @ values.T, (values * weight) @ slopes.T, (slopes * weight) @ slopes.T
     for matrix in matrices:
         matrix.flags.writeable = False
     return matrices
+
+
+@lru_cache(maxsize=32)
+def gauss(count: int) -> tuple[Array, Array]:
+    """Points and weights of the Gauss rule on [-1, 1], exact to degree 2 count - 1."""
+    xi, weight = leggauss(count)
+    xi.flags.writeable = weight.flags.writeable = False
+    return xi, weight
 
 
 @lru_cache(maxsize=32)

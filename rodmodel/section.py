@@ -13,11 +13,10 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.polynomial.legendre import leggauss
 from numpy.typing import NDArray
 
 from cases.scene import Material, Rectangle
-from rodmodel.axial import legendre, legendre_derivatives
+from rodmodel.axial import gauss, legendre, legendre_derivatives
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -139,7 +138,7 @@ def elasticity_matrix(material: Material, level: int) -> Array:
 
 def section_quadrature(section: Rectangle, level: int) -> tuple[Array, Array, Array]:
     """Gauss points x, y (mm) and weights (mm^2) that integrate products of two level-k functions exactly."""
-    xi, weight = leggauss(level + 1)
+    xi, weight = gauss(level + 1)
     x, y = np.meshgrid(0.5 * section.width * xi, 0.5 * section.height * xi, indexing="ij")
     area_weight = 0.25 * section.width * section.height * np.outer(weight, weight)
     return x.ravel(), y.ravel(), area_weight.ravel()
