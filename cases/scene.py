@@ -27,6 +27,8 @@ Face = Literal["top", "bottom", "left", "right"]
 FACES: tuple[Face, ...] = ("top", "bottom", "left", "right")
 ENDS: tuple[End, ...] = ("start", "end")
 
+# The length of a curved rod is written down with finitely many digits.
+_ROUNDED = 1e-4
 # Least angle between the outward normals of two faces that may touch, degrees.
 _LEAST_FACING_ANGLE = 135.0
 
@@ -101,22 +103,113 @@ class Rectangle:
 
 
 @dataclass(frozen=True)
+class Circle:
+    """Full circular cross-section.
+
+    Parameters
+    ----------
+    diameter : mm
+    """
+
+    diameter: float
+
+    def __post_init__(self) -> None:
+        _require_positive(self.diameter, "diameter", "a diameter")
+
+
+@dataclass(frozen=True)
+class Ring:
+    """Circular tube.
+
+    Parameters
+    ----------
+    outer_diameter, inner_diameter : mm
+    """
+
+    outer_diameter: float
+    inner_diameter: float
+
+    def __post_init__(self) -> None:
+        _require_positive(self.inner_diameter, "inner_diameter", "a diameter")
+        ok = math.isfinite(self.outer_diameter) and self.outer_diameter > self.inner_diameter
+        remedy = f"the outer diameter must be larger than the inner one, {self.inner_diameter:g} mm"
+        _require(ok, "outer_diameter", f"{self.outer_diameter:g}", remedy)
+
+
+@dataclass(frozen=True)
+class Box:
+    """Rectangular tube of constant wall thickness.
+
+    Parameters
+    ----------
+    width, height : outer extents along e1 (x) and e2 (y), mm
+    wall : wall thickness, mm
+    """
+
+    width: float
+    height: float
+    wall: float
+
+    def __post_init__(self) -> None:
+        _require_positive(self.width, "width", "a width")
+        _require_positive(self.height, "height", "a height")
+        _require_positive(self.wall, "wall", "a wall thickness")
+        ok = 2.0 * self.wall < min(self.width, self.height)
+        _require(ok, "wall", f"{self.wall:g}", "the wall must be thinner than half the smaller side")
+
+
+@dataclass(frozen=True)
+class Polygon:
+    """Cross-section bounded by straight edges, with holes; its centroid is laid on the centre line.
+
+    Parameters
+    ----------
+    outer : corners (x, y) in order around the section, mm, without repeating the first
+    holes : corners of each hole, likewise
+    """
+
+    outer: tuple[tuple[float, float], ...]
+    holes: tuple[tuple[tuple[float, float], ...], ...] = ()
+
+    def __post_init__(self) -> None:
+        for key, corners in (("outer", self.outer), *((f"holes #{n}", hole) for n, hole in enumerate(self.holes, 1))):
+            _require(len(corners) >= 3, key, f"{len(corners)} corners", "at least three are needed")
+            finite = all(len(corner) == 2 and bool(np.all(np.isfinite(corner))) for corner in corners)
+            _require(finite, key, [list(corner) for corner in corners], "corners are pairs of finite numbers")
+            _require(abs(_signed_area(corners)) > 0.0, key, "corners without an area", "they must go around one")
+        holes = sum(abs(_signed_area(hole)) for hole in self.holes)
+        ok = holes < abs(_signed_area(self.outer))
+        _require(ok, "holes", f"{holes:g} mm^2 of holes", "the holes must lie within the outer corners")
+
+
+def _signed_area(corners: tuple[tuple[float, float], ...]) -> float:
+    x, y = np.array(corners, dtype=float).T
+    return 0.5 * float(np.dot(x, np.roll(y, -1)) - np.dot(y, np.roll(x, -1)))
+
+
+Section = Rectangle | Circle | Ring | Box | Polygon
+
+
+@dataclass(frozen=True)
 class Line:
-    """Straight centre line.
+    """Straight centre line, pre-twisted if asked for.
 
     Parameters
     ----------
     start, end : end points in global coordinates (X, Y, Z), mm
-    up : direction whose part normal to the line is e2 (any length)
+    up : direction whose part normal to the line is e2 at the start (any length)
+    twist : angle by which the frame turns about t from start to end, at an even rate, rad
     """
 
     start: Vector
     end: Vector
     up: Vector
+    twist: float = 0.0
 
     def __post_init__(self) -> None:
         for key, vector in (("start", self.start), ("end", self.end), ("up", self.up)):
             _require_finite(vector, key)
+        _require(math.isfinite(self.twist), "twist", f"{self.twist:g}", "a finite angle is needed")
         _require(self.length > 0.0, "end", list(self.end), "the end must differ from the start")
         normal_part = np.cross(np.subtract(self.end, self.start), self.up)
         ok = float(np.linalg.norm(normal_part)) > 1e-9 * self.length * float(np.linalg.norm(self.up))
@@ -129,6 +222,55 @@ class Line:
 
 
 @dataclass(frozen=True)
+class Helix:
+    """Helical centre line, a circular arc where the pitch is zero.
+
+    The frame moves along with the screw motion that makes the line, so that curvature and twist of the frame are
+    constant; of an arc it is the rotation-minimising frame.
+
+    Parameters
+    ----------
+    start : start point (X, Y, Z), mm
+    centre : a point of the axis, mm
+    axis : direction of the axis (any length); the line turns about it by the right-hand rule
+    angle : angle turned from start to end, positive, rad
+    up : direction whose part normal to the line at its start is e2 there (any length)
+    pitch : advance along the axis in one full turn, mm, negative for a left-hand helix
+    """
+
+    start: Vector
+    centre: Vector
+    axis: Vector
+    angle: float
+    up: Vector
+    pitch: float = 0.0
+
+    def __post_init__(self) -> None:
+        for key, vector in (("start", self.start), ("centre", self.centre), ("axis", self.axis), ("up", self.up)):
+            _require_finite(vector, key)
+        _require_positive(self.angle, "angle", "an angle")
+        _require(math.isfinite(self.pitch), "pitch", f"{self.pitch:g}", "a finite length is needed")
+        _require(float(np.linalg.norm(self.axis)) > 0.0, "axis", list(self.axis), "give a direction")
+        from_axis = np.linalg.norm(np.subtract(self.start, self.centre))
+        ok = self.radius > 1e-9 * float(from_axis)
+        _require(ok, "start", list(self.start), "the start must not lie on the axis")
+
+    @property
+    def radius(self) -> float:
+        """Distance of the line from the axis, mm."""
+        axis = np.asarray(self.axis) / np.linalg.norm(self.axis)
+        return float(np.linalg.norm(np.cross(axis, np.subtract(self.start, self.centre))))
+
+    @property
+    def length(self) -> float:
+        """Arc length, mm."""
+        return self.angle * math.hypot(self.radius, self.pitch / (2.0 * math.pi))
+
+
+CentreLine = Line | Helix
+
+
+@dataclass(frozen=True)
 class Rod:
     """An elastic rod.
 
@@ -136,12 +278,12 @@ class Rod:
     ----------
     name : how supports, loads and contacts call it
     element_borders : borders of the rod model's elements, arc length from the rod's start, mm; the first is
-        0, the last the rod's length
+        0, the last the rod's length, which it is set to where it was rounded
     """
 
     name: str
-    centre_line: Line
-    section: Rectangle
+    centre_line: CentreLine
+    section: Section
     material: Material
     element_borders: tuple[float, ...]
 
@@ -152,8 +294,9 @@ class Rod:
         rising = all(a < b for a, b in pairwise(borders))
         _require(rising, key, list(borders), "borders must increase along the rod")
         length = self.centre_line.length
-        ok = borders[0] == 0.0 and math.isclose(borders[-1], length, rel_tol=1e-9)
+        ok = borders[0] == 0.0 and math.isclose(borders[-1], length, rel_tol=_ROUNDED)
         _require(ok, key, f"{borders[0]:g} .. {borders[-1]:g}", f"borders must run from 0 to {length:g} mm")
+        object.__setattr__(self, "element_borders", (*borders[:-1], length))
 
     @property
     def length(self) -> float:
@@ -182,6 +325,40 @@ class SectionForce:
     rod: str
     position: float
     force: Vector
+
+
+@dataclass(frozen=True)
+class SectionMoment:
+    """A moment on one cross-section, as the linear distribution of traction that makes it.
+
+    Parameters
+    ----------
+    position : arc length from the rod's start, mm
+    moment : global components (X, Y, Z), N mm
+    """
+
+    rod: str
+    position: float
+    moment: Vector
+
+
+@dataclass(frozen=True)
+class LineLoad:
+    """A force per length of the centre line, spread evenly over the cross-sections.
+
+    Parameters
+    ----------
+    start, end : stretch of the rod that it acts on, arc length from the rod's start, mm
+    force : global components (X, Y, Z), N/mm
+    """
+
+    rod: str
+    start: float
+    end: float
+    force: Vector
+
+
+Load = SectionForce | SectionMoment | LineLoad
 
 
 @dataclass(frozen=True)
@@ -225,7 +402,7 @@ class Scene:
     name: str
     rods: tuple[Rod, ...]
     supports: tuple[Clamp, ...]
-    loads: tuple[SectionForce, ...]
+    loads: tuple[Load, ...]
     contacts: tuple[ContactPair, ...]
 
     def __post_init__(self) -> None:
@@ -245,10 +422,7 @@ class Scene:
         for number, load in enumerate(self.loads, 1):
             key = f"loads #{number}"
             rod = self._rod_at(f"{key}.rod", load.rod)
-            _require_finite(load.force, f"{key}.force")
-            ok = 0.0 <= load.position <= rod.length * (1.0 + 1e-9)
-            remedy = f"rod '{rod.name}' runs from 0 to {rod.length:g} mm"
-            _require(ok, f"{key}.position", f"{load.position:g}", remedy)
+            _check_load(load, rod, key)
         for pair in self.contacts:
             self._check_contact(pair)
 
@@ -265,6 +439,12 @@ class Scene:
             self._rod_at(f"{key}.{side}.rod", face.rod)
             remedy = f"write one of {', '.join(FACES)}"
             _require(face.face in FACES, f"{key}.{side}.face", f"'{face.face}'", remedy)
+        for side, face in (("first", pair.first), ("second", pair.second)):
+            rod = self.rod(face.rod)
+            ok = isinstance(rod.section, Rectangle | Box) and isinstance(rod.centre_line, Line)
+            ok = ok and rod.centre_line.twist == 0.0  # type: ignore[union-attr]
+            remedy = "contact is between flat faces of straight rods with rectangular or box sections"
+            _require(ok, f"{key}.{side}.rod", f"'{rod.name}'", remedy)
         different = pair.first.rod != pair.second.rod
         _require(different, f"{key}.second.rod", f"'{pair.second.rod}'", "a pair needs two different rods")
         rod = self.rod(pair.first.rod)
@@ -289,6 +469,18 @@ class Scene:
             if pair.name == name:
                 return pair
         raise KeyError(name)
+
+
+def _check_load(load: Load, rod: Rod, key: str) -> None:
+    name, vector = ("moment", load.moment) if isinstance(load, SectionMoment) else ("force", load.force)
+    _require_finite(vector, f"{key}.{name}")
+    remedy = f"rod '{rod.name}' runs from 0 to {rod.length:g} mm"
+    last = rod.length * (1.0 + 1e-9)
+    if isinstance(load, LineLoad):
+        ok = 0.0 <= load.start < load.end <= last
+        _require(ok, f"{key}.start", f"{load.start:g} .. {load.end:g}", f"a rising stretch is needed; {remedy}")
+    else:
+        _require(0.0 <= load.position <= last, f"{key}.position", f"{load.position:g}", remedy)
 
 
 @dataclass(frozen=True)
