@@ -9,7 +9,9 @@ Needs numpy, scipy and the plain data of `cases.scene`, whose names it re-export
 from cases.scene import (
     Clamp,
     ContactPair,
+    Helix,
     Line,
+    LineLoad,
     Material,
     Rectangle,
     Rod,
@@ -17,6 +19,7 @@ from cases.scene import (
     Scene,
     SceneError,
     SectionForce,
+    SectionMoment,
 )
 from rodmodel.solution import ContactPoints, Cost, Solution
 from rodmodel.solver import solve
@@ -26,7 +29,9 @@ __all__ = [
     "ContactPair",
     "ContactPoints",
     "Cost",
+    "Helix",
     "Line",
+    "LineLoad",
     "Material",
     "Rectangle",
     "Rod",
@@ -34,6 +39,7 @@ __all__ = [
     "Scene",
     "SceneError",
     "SectionForce",
+    "SectionMoment",
     "Solution",
     "solve",
 ]

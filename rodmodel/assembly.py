@@ -6,15 +6,15 @@ nodes, and for the elements it lies in, a part on their bubbles. Compliances are
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Hashable, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from cases.scene import Rectangle, Rod, Scene, SectionForce
+from cases.scene import Rod, Scene
 from rodmodel.axial import shape_functions
-from rodmodel.centre_line import frame
+from rodmodel.centre_line import darboux
 from rodmodel.chain import Chain
 from rodmodel.section import Fields, section_stiffness
 from rodmodel.stiffness import Element, ElementFamily, condensed_element, element_family
@@ -37,16 +37,17 @@ class ElementStore:
     """
 
     order: int
-    _families: dict[tuple[Rectangle, float, Fields], ElementFamily] = field(default_factory=dict)
-    _elements: dict[tuple[Rectangle, float, Fields, float], Element] = field(default_factory=dict)
+    _families: dict[Hashable, ElementFamily] = field(default_factory=dict)
+    _elements: dict[Hashable, Element] = field(default_factory=dict)
     chains: dict[str, Chain] = field(default_factory=dict)
 
     def element(self, rod: Rod, fields: Fields, length: float) -> Element:
         """Condensed element of the rod for unit Young's modulus; `length` in mm."""
-        kind = (rod.section, rod.material.poisson_ratio, fields)
+        turning = darboux(rod.centre_line)
+        kind = (rod.section, rod.material.poisson_ratio, fields, turning)
         if kind not in self._families:
-            section = section_stiffness(rod.section, replace(rod.material, young_modulus=1.0), fields)
-            self._families[kind] = element_family(self.order, fields, section)
+            section = section_stiffness(rod.section, replace(rod.material, young_modulus=1.0), fields, turning)
+            self._families[kind] = element_family(self.order, fields, section, reversible=turning[2] == 0.0)
         # Lengths that differ only by the round-off of the borders they come from are one length.
         key = (*kind, float(f"{length:.11e}"))
         if key not in self._elements:
@@ -144,25 +145,6 @@ def point_parts(assembled: AssembledRod, station: Array, direction: Array) -> li
     for element in np.unique(index):
         members = np.flatnonzero(index == element)
         parts.append(Part(int(element), members, along[:, None, members] * direction[None, :, members]))
-    return parts
-
-
-def load_parts(assembled: AssembledRod, loads: Sequence[SectionForce], column: int) -> list[Part]:
-    """Forces spread evenly over sections, all in one functional.
-
-    An even spread works on the mean displacement alone, which is the coefficient of the constant function.
-    """
-    parts = []
-    for load in loads:
-        if load.rod != assembled.rod.name:
-            continue
-        direction = np.zeros((assembled.fields.count, 1))
-        for component, force in enumerate(frame(assembled.rod.centre_line) @ load.force):
-            index = assembled.fields.index(component, 0, 0)
-            if index is not None:
-                direction[index] = force
-        at_load = point_parts(assembled, np.array([load.position]), direction)
-        parts += [replace(part, columns=np.array([column])) for part in at_load]
     return parts
 
 

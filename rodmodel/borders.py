@@ -13,7 +13,7 @@ from itertools import combinations
 import numpy as np
 from numpy.typing import NDArray
 
-from cases.scene import ContactPair, Rod, Scene
+from cases.scene import ContactPair, LineLoad, Rod, Scene
 from rodmodel.pairing import opposite_stations
 from rodmodel.system import SAME_BORDER
 
@@ -60,7 +60,8 @@ def natural_borders(scene: Scene, rod: Rod) -> Array:
 
 
 def _held_stations(scene: Scene, rod: Rod) -> Array:
-    loads = [load.position for load in scene.loads if load.rod == rod.name]
+    mine = [load for load in scene.loads if load.rod == rod.name]
+    loads = [at for load in mine for at in ((load.start, load.end) if isinstance(load, LineLoad) else (load.position,))]
     zones = [station for pair in scene.contacts for station in _on_rod(scene, pair, rod, np.array(pair.zone))]
     return np.array([0.0, rod.element_borders[-1], *loads, *zones])
 

@@ -2,9 +2,9 @@
 
 Level h_k: each displacement component (u, v, w) is a complete polynomial of degree k in (x, y), spanned by products
 of Legendre polynomials, which are orthogonal over the rectangle (raw monomials lose all digits at high level).
-Strain of the straight rod in the local frame, order (xx, yy, ss, ys, xs, xy):
+Strain in the local frame, order (xx, yy, ss, ys, xs, xy):
 
-    eps = B_0 psi + B_1 psi',   S_ab = int B_a^T D B_b dA.
+    eps = B_0 psi + B_1 psi',   S_ab = int B_a^T D B_b sqrt(g) dA.
 """
 
 from __future__ import annotations
@@ -22,6 +22,13 @@ Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
 U, V, W = 0, 1, 2
+
+# k1, k2, tau: rate of turning of the frame about e1, e2, t, rad/mm
+Darboux = tuple[float, float, float]
+
+STRAIGHT: Darboux = (0.0, 0.0, 0.0)
+# Points a side by which the quadrature of a curved rod exceeds that of a straight one.
+EXTRA_POINTS = 8
 
 
 @dataclass(frozen=True)
@@ -100,23 +107,42 @@ def _mean_square_one(degree: int) -> Array:
     return np.asarray(np.sqrt(2.0 * np.arange(degree + 1) + 1.0)[:, None])
 
 
-def strain_operators(section: Rectangle, chosen: Fields, x: Array, y: Array) -> tuple[Array, Array]:
-    """B_0 and B_1 at section points, each of shape (n_points, 6, n_fields)."""
-    value = section_values(section, chosen, x, y)
-    slope_x, slope_y = section_slopes(section, chosen, x, y)
+def strain_operators(
+    section: Rectangle, chosen: Fields, x: Array, y: Array, turning: Darboux
+) -> tuple[Array, Array, Array]:
+    """B_0 and B_1 at section points, each of shape (n_points, 6, n_fields), and sqrt(g) there, shape (n_points,).
+
+    The frame (e1, e2, t) turns by omega = (k1, k2, tau) per arc length. Along s a point moves by sqrt(g) t +
+    tau (x e2 - y e1) with sqrt(g) = 1 - k2 x + k1 y, and the components of a vector change by omega x (u, v, w). So the
+    derivative of the displacement along t is 1 / sqrt(g) times
+
+        (u', v', w') + omega x (u, v, w) - tau (x d/dy - y d/dx) (u, v, w).
+    """
+    k1, k2, tau = turning
+    value = section_values(section, chosen, x, y).T
+    slope_x, slope_y = (slope.T for slope in section_slopes(section, chosen, x, y))
+    stretch = 1.0 - k2 * x + k1 * y
+    along = value / stretch[:, None]
+    swirl = -tau * (x[:, None] * slope_y - y[:, None] * slope_x) / stretch[:, None]
     is_u, is_v, is_w = (chosen.indices(component) for component in (U, V, W))
-    b0 = np.zeros((value.shape[1], 6, chosen.count))
+    b0 = np.zeros((len(x), 6, chosen.count))
     b1 = np.zeros_like(b0)
-    b0[:, 0, is_u] = slope_x[is_u].T
-    b0[:, 1, is_v] = slope_y[is_v].T
-    b0[:, 3, is_w] = slope_y[is_w].T
-    b0[:, 4, is_w] = slope_x[is_w].T
-    b0[:, 5, is_u] = slope_y[is_u].T
-    b0[:, 5, is_v] = slope_x[is_v].T
-    b1[:, 2, is_w] = value[is_w].T
-    b1[:, 3, is_v] = value[is_v].T
-    b1[:, 4, is_u] = value[is_u].T
-    return b0, b1
+    b0[:, 0, is_u] = slope_x[:, is_u]
+    b0[:, 1, is_v] = slope_y[:, is_v]
+    b0[:, 5, is_u] = slope_y[:, is_u]
+    b0[:, 5, is_v] = slope_x[:, is_v]
+    b0[:, 3, is_w] = slope_y[:, is_w]
+    b0[:, 4, is_w] = slope_x[:, is_w]
+    for row, own, others in (
+        (2, is_w, ((is_v, k1), (is_u, -k2))),
+        (3, is_v, ((is_u, tau), (is_w, -k1))),
+        (4, is_u, ((is_w, k2), (is_v, -tau))),
+    ):
+        b1[:, row, own] = along[:, own]
+        b0[:, row, own] += swirl[:, own]
+        for other, rate in others:
+            b0[:, row, other] += rate * along[:, other]
+    return b0, b1, stretch
 
 
 def elasticity_matrix(material: Material, level: int) -> Array:
@@ -136,9 +162,13 @@ def elasticity_matrix(material: Material, level: int) -> Array:
     return law
 
 
-def section_quadrature(section: Rectangle, level: int) -> tuple[Array, Array, Array]:
-    """Gauss points x, y (mm) and weights (mm^2) that integrate products of two level-k functions exactly."""
-    xi, weight = gauss(level + 1)
+def section_quadrature(section: Rectangle, level: int, turning: Darboux) -> tuple[Array, Array, Array]:
+    """Gauss points x, y (mm) and weights (mm^2) for products of two level-k functions.
+
+    Exact for a straight rod; a curved one divides by sqrt(g), which `EXTRA_POINTS` more a side resolve to round-off
+    down to a radius of the section's size.
+    """
+    xi, weight = gauss(level + 1 + (EXTRA_POINTS if any(turning) else 0))
     x, y = np.meshgrid(0.5 * section.width * xi, 0.5 * section.height * xi, indexing="ij")
     area_weight = 0.25 * section.width * section.height * np.outer(weight, weight)
     return x.ravel(), y.ravel(), area_weight.ravel()
@@ -146,18 +176,22 @@ def section_quadrature(section: Rectangle, level: int) -> tuple[Array, Array, Ar
 
 @dataclass(frozen=True, eq=False)
 class SectionStiffness:
-    """S_ab = int B_a^T D B_b dA, each of shape (n_fields, n_fields); S_10 = S_01^T."""
+    """S_ab = int B_a^T D B_b sqrt(g) dA, each of shape (n_fields, n_fields); S_10 = S_01^T."""
 
     s00: Array
     s01: Array
     s11: Array
 
 
-def section_stiffness(section: Rectangle, material: Material, chosen: Fields) -> SectionStiffness:
-    """Section stiffness matrices of a straight rod: N, N mm and N mm^2 per unit of psi and psi'."""
-    x, y, weight = section_quadrature(section, chosen.level)
-    b0, b1 = (b.reshape(-1, chosen.count) for b in strain_operators(section, chosen, x, y))
+def section_stiffness(section: Rectangle, material: Material, chosen: Fields, turning: Darboux) -> SectionStiffness:
+    """Section stiffness matrices: N, N mm and N mm^2 per unit of psi and psi'.
+
+    turning : k1, k2, tau of the frame, rad/mm
+    """
+    x, y, weight = section_quadrature(section, chosen.level, turning)
+    b0, b1, stretch = strain_operators(section, chosen, x, y, turning)
+    b0, b1 = (b.reshape(-1, chosen.count) for b in (b0, b1))
     law = elasticity_matrix(material, chosen.level)
-    weighted = (weight[:, None, None] * law).reshape(-1, 6, 6)
+    weighted = ((weight * stretch)[:, None, None] * law).reshape(-1, 6, 6)
     d_b0, d_b1 = ((weighted @ b.reshape(-1, 6, chosen.count)).reshape(-1, chosen.count) for b in (b0, b1))
     return SectionStiffness(b0.T @ d_b0, b0.T @ d_b1, b1.T @ d_b1)

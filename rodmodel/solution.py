@@ -8,14 +8,16 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from cases.scene import End, Scene
+from cases.scene import End, Scene, Section
 from rodmodel.assembly import AssembledRod, compliance
 from rodmodel.axial import shape_function_slopes, shape_functions
-from rodmodel.centre_line import frame, global_points
+from rodmodel.centre_line import centre_points, darboux, frames, global_points
 from rodmodel.edges import Stretch
 from rodmodel.pairing import face_axes, facing_points
 from rodmodel.profile import ContactProfile, pressure_profile
 from rodmodel.section import (
+    STRAIGHT,
+    Fields,
     U,
     V,
     W,
@@ -97,6 +99,12 @@ class Solution:
         loads = [self.system.total_load(rod.name, self.force) for rod in self.scene.rods]
         return 0.5 * sum(float(compliance(load)[0, 0]) for load in loads)
 
+    def frame(self, rod: str, station: Array) -> tuple[Array, Array]:
+        """Points of the centre line, global, mm, shape (3, n), and frames there, rows e1, e2, t, shape (n, 3, 3)."""
+        line = self.scene.rod(rod).centre_line
+        station = np.atleast_1d(np.asarray(station, dtype=float))
+        return centre_points(line, station), frames(line, station)
+
     def displacement(self, rod: str, station: Array) -> Array:
         """Displacement of the centre line, global components, mm, shape (3, n); station in mm along the rod."""
         station = np.atleast_1d(np.asarray(station, dtype=float))
@@ -108,13 +116,15 @@ class Solution:
         psi, _ = self._axial(assembled, points[2])
         values = section_values(assembled.rod.section, assembled.fields, points[0], points[1])
         local = np.array([(values * psi)[assembled.fields.indices(c)].sum(axis=0) for c in (U, V, W)])
-        return np.asarray(frame(assembled.rod.centre_line).T @ local)
+        axes = frames(assembled.rod.centre_line, np.asarray(points[2], dtype=float))
+        return np.asarray(np.einsum("ncg,cn->gn", axes, local))
 
     def strain(self, rod: str, points: Array) -> Array:
         """Strain in the local frame at points (x, y, s): xx, yy, ss, ys, xs, xy (shears as gamma), shape (6, n)."""
         assembled = self.system.rods[rod]
         psi, slope = self._axial(assembled, points[2])
-        b0, b1 = strain_operators(assembled.rod.section, assembled.fields, points[0], points[1])
+        turning = darboux(assembled.rod.centre_line)
+        b0, b1, _ = strain_operators(assembled.rod.section, assembled.fields, points[0], points[1], turning)
         return np.asarray(np.einsum("pcf,fp->cp", b0, psi) + np.einsum("pcf,fp->cp", b1, slope))
 
     def stress(self, rod: str, points: Array) -> Array:
@@ -128,8 +138,9 @@ class Solution:
         """
         assembled = self.system.rods[rod]
         station = np.atleast_1d(np.asarray(station, dtype=float))
-        x, y, weight = section_quadrature(assembled.rod.section, self.level)
-        b0, b1 = strain_operators(assembled.rod.section, assembled.fields, x, y)
+        turning = darboux(assembled.rod.centre_line)
+        x, y, weight = section_quadrature(assembled.rod.section, self.level, turning)
+        b0, b1, _ = strain_operators(assembled.rod.section, assembled.fields, x, y, turning)
         law = elasticity_matrix(assembled.rod.material, self.level)
         # What each stress component at a point adds to each resultant; components xx, yy, xy add nothing.
         lever = np.zeros((6, 6, len(x)))
@@ -151,8 +162,8 @@ class Solution:
         element, values = assembled.elements[-at_end], self.coefficients[rod][-at_end]
         rows = element.condensed.reshape(2, assembled.fields.count, -1)[int(at_end)]
         residual = assembled.rod.material.young_modulus * (rows @ values[:2].ravel()) - load.ends[int(at_end), :, 0]
-        axes = frame(assembled.rod.centre_line)
-        local = _rigid_motions(assembled) @ residual
+        axes = frames(assembled.rod.centre_line, assembled.borders[[-at_end]])[0]
+        local = _rigid_motions(assembled.rod.section, assembled.fields) @ residual
         return np.concatenate([axes.T @ local[:3], axes.T @ local[3:]])
 
     def contact_points(self, pair: str) -> ContactPoints:
@@ -195,21 +206,20 @@ class Solution:
         return psi, np.einsum("an,naf->fn", shape_function_slopes(self.order, xi), values) * jacobian
 
 
-def _rigid_motions(assembled: AssembledRod) -> Array:
+def _rigid_motions(section: Section, fields: Fields) -> Array:
     """Unit translations along, then rotations about e1, e2, t of a section, as its fields, shape (6, n_fields)."""
-    fields, section = assembled.fields, assembled.rod.section
-    half_width, half_height = 0.5 * section.width / np.sqrt(3.0), 0.5 * section.height / np.sqrt(3.0)
+    x, y, weight = section_quadrature(section, max(fields.level, 1), STRAIGHT)
+    values = section_values(section, fields, x, y) * (weight / weight.sum())
     motions = np.zeros((6, fields.count))
-    for motion, component, degrees, size in (
-        (0, U, (0, 0), 1.0),
-        (1, V, (0, 0), 1.0),
-        (2, W, (0, 0), 1.0),
-        (3, W, (0, 1), half_height),
-        (4, W, (1, 0), -half_width),
-        (5, U, (0, 1), -half_height),
-        (5, V, (1, 0), half_width),
+    for motion, component, function in (
+        (0, U, np.ones_like(x)),
+        (1, V, np.ones_like(x)),
+        (2, W, np.ones_like(x)),
+        (3, W, y),
+        (4, W, -x),
+        (5, U, -y),
+        (5, V, x),
     ):
-        index = fields.index(component, *degrees)
-        if index is not None:
-            motions[motion, index] = size
+        mine = fields.indices(component)
+        motions[motion, mine] = values[mine] @ function
     return motions

@@ -94,15 +94,15 @@ class ElementFamily:
     bubbles: tuple[Array, ...]
 
 
-def element_family(order: int, fields: Fields, section: SectionStiffness) -> ElementFamily:
-    """Terms of the elements of a straight rod.
+def element_family(order: int, fields: Fields, section: SectionStiffness, reversible: bool) -> ElementFamily:
+    """Terms of the elements of a rod with constant curvature.
 
-    The rod looks the same from both ends. Bubbles even along the element for u and v and odd for w do not couple with
-    the others, so that K_bb falls into two blocks of half its size.
+    reversible : the rod looks the same from both ends, as one does whose frame does not turn about t. Bubbles even
+        along the element for u and v and odd for w then do not couple with the others: K_bb falls into two blocks.
     """
     terms = stiffness_terms(order, section)
     n_nodal = 2 * fields.count
-    parity = np.add.outer(np.arange(2, order + 1), fields.table[0] == W).ravel() % 2
+    parity = np.add.outer(np.arange(2, order + 1), fields.table[0] == W).ravel() % 2 * reversible
     groups = tuple(group for group in (np.flatnonzero(parity == 0), np.flatnonzero(parity == 1)) if len(group))
     rows = [n_nodal + group for group in groups]
     return ElementFamily(

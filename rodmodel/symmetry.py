@@ -7,11 +7,14 @@ and no contact face looks across it. Reflection then maps the scene onto itself,
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
-from cases.scene import Rod, Scene
-from rodmodel.centre_line import frame
+from cases.scene import Load, Rod, Scene, SectionMoment
+from rodmodel.centre_line import frame, screw_motion
 from rodmodel.pairing import face_axes
 from rodmodel.section import Fields
+
+Array = NDArray[np.float64]
 
 # Directions and offsets are read from files with finitely many digits.
 TOLERANCE = 1e-9
@@ -24,22 +27,38 @@ def symmetric_fields(scene: Scene, level: int) -> dict[str, Fields]:
     return {rod.name: Fields(level, *_mirrors(rod, planes)) for rod in scene.rods}
 
 
-def _mirrors(rod: Rod, planes: list[np.ndarray]) -> tuple[bool, bool]:
+def _mirrors(rod: Rod, planes: list[Array]) -> tuple[bool, bool]:
     axes = frame(rod.centre_line)
     mirror_x, mirror_y = (any(abs(axis @ normal) > 1.0 - TOLERANCE for normal in planes) for axis in axes[:2])
     return mirror_x, mirror_y
 
 
-def _is_mirror_plane(scene: Scene, normal: np.ndarray) -> bool:
+def _is_mirror_plane(scene: Scene, normal: Array) -> bool:
     origin = np.asarray(scene.rods[0].centre_line.start)
-    for rod in scene.rods:
-        line = rod.centre_line
-        for point in (line.start, line.end):
-            if abs(normal @ (np.asarray(point) - origin)) > TOLERANCE * rod.length:
-                return False
-        if max(abs(axis @ normal) for axis in frame(line)[:2]) < 1.0 - TOLERANCE:
-            return False
-    if any(abs(normal @ load.force) > TOLERANCE * np.linalg.norm(load.force) for load in scene.loads):
+    if not all(_lies_in(rod, origin, normal) for rod in scene.rods):
+        return False
+    if not all(_keeps(load, normal) for load in scene.loads):
         return False
     sides = [side for pair in scene.contacts for side in (pair.first, pair.second)]
     return all(abs(normal @ face_axes(scene.rod(side.rod), side.face).normal) < TOLERANCE for side in sides)
+
+
+def _lies_in(rod: Rod, origin: Array, normal: Array) -> bool:
+    """Whether a rod's centre line lies in the plane, and an axis of its section stays across it."""
+    motion = screw_motion(rod.centre_line)
+    if abs(normal @ (motion.start - origin)) > TOLERANCE * rod.length:
+        return False
+    if max(abs(axis @ normal) for axis in motion.axes[:2]) < 1.0 - TOLERANCE:
+        return False
+    # A line that does not turn stays in the plane; one that turns must do so about the plane's normal.
+    return motion.turning == 0.0 or abs(motion.axis @ normal) > 1.0 - TOLERANCE
+
+
+def _keeps(load: Load, normal: Array) -> bool:
+    """Whether reflection leaves a load as it is: no force across the plane, no moment but across it."""
+    vector = np.asarray(load.moment if isinstance(load, SectionMoment) else load.force)
+    across = abs(float(normal @ vector))
+    size = float(np.linalg.norm(vector))
+    if isinstance(load, SectionMoment):
+        return size - across <= TOLERANCE * size
+    return across <= TOLERANCE * size

@@ -18,9 +18,9 @@ from rodmodel.assembly import (
     combined,
     compliance,
     functionals,
-    load_parts,
     point_parts,
 )
+from rodmodel.loads import load_parts
 from rodmodel.pairing import (
     ContactGrid,
     contact_grid,

@@ -8,7 +8,7 @@ import pytest
 import rodmodel as rm
 from rodmodel.assembly import ElementStore, assembled_rod, coefficients, compliance, functionals, point_parts
 from rodmodel.axial import shape_functions
-from rodmodel.section import Fields, section_stiffness
+from rodmodel.section import STRAIGHT, Fields, section_stiffness
 from rodmodel.stiffness import stiffness_terms
 
 BORDERS = np.array([0.0, 40.0, 100.0, 130.0])
@@ -22,7 +22,7 @@ def scene(cantilever: Callable[..., rm.Scene]) -> rm.Scene:
 def dense_inverse(scene: rm.Scene, fields: Fields, order: int, borders: np.ndarray) -> np.ndarray:
     """Inverse stiffness on all nodes and bubbles of the clamped rod: node dofs first, then bubbles by element."""
     n, n_elements = fields.count, len(borders) - 1
-    terms = stiffness_terms(order, section_stiffness(scene.rods[0].section, scene.rods[0].material, fields))
+    terms = stiffness_terms(order, section_stiffness(scene.rods[0].section, scene.rods[0].material, fields, STRAIGHT))
     size = n * (n_elements + 1 + n_elements * (order - 1))
     stiffness = np.zeros((size, size))
     for index, length in enumerate(np.diff(borders)):

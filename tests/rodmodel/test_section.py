@@ -5,6 +5,7 @@ import pytest
 
 from cases.scene import Material, Rectangle
 from rodmodel.section import (
+    STRAIGHT,
     Fields,
     U,
     V,
@@ -29,7 +30,7 @@ def test_a_level_has_the_complete_polynomials_of_pascals_triangle(level: int, co
 @pytest.mark.parametrize("level", [1, 4, 12])
 def test_functions_are_orthonormal_over_the_section(level: int) -> None:
     fields = Fields(level)
-    x, y, weight = section_quadrature(SECTION, level)
+    x, y, weight = section_quadrature(SECTION, level, STRAIGHT)
     values = section_values(SECTION, fields, x, y)
     one = values[fields.indices(U)]
     gram = (one * weight) @ one.T / (SECTION.width * SECTION.height)
@@ -81,11 +82,11 @@ def test_stiffness_integrates_the_energy_of_any_strain() -> None:
     fields = Fields(3)
     rng = np.random.default_rng(1)
     psi, slope = rng.standard_normal((2, fields.count))
-    stiffness = section_stiffness(SECTION, STEEL, fields)
+    stiffness = section_stiffness(SECTION, STEEL, fields, STRAIGHT)
     n = 400
     x, y = (side * (np.arange(n) + 0.5) / n - side / 2.0 for side in (SECTION.width, SECTION.height))
     grid_x, grid_y = (axis.ravel() for axis in np.meshgrid(x, y))
-    b0, b1 = strain_operators(SECTION, fields, grid_x, grid_y)
+    b0, b1, _ = strain_operators(SECTION, fields, grid_x, grid_y, STRAIGHT)
     strain = b0 @ psi + b1 @ slope
     energy = np.einsum("pi,ij,pj->", strain, elasticity_matrix(STEEL, 3), strain)
     energy *= SECTION.width * SECTION.height / n**2

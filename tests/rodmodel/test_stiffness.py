@@ -5,7 +5,7 @@ import pytest
 
 from cases.scene import Material, Rectangle
 from rodmodel.axial import axial_matrices
-from rodmodel.section import Fields, SectionStiffness, U, V, W, section_stiffness
+from rodmodel.section import STRAIGHT, Fields, SectionStiffness, U, V, W, section_stiffness
 from rodmodel.stiffness import condensed_element, element_family, stiffness_terms
 
 SECTION = Rectangle(15.0, 10.0)
@@ -18,7 +18,7 @@ def element_stiffness(length: float, order: int, section: SectionStiffness) -> n
 
 
 def test_element_is_the_kronecker_sum() -> None:
-    stiffness = section_stiffness(SECTION, MATERIAL, Fields(2))
+    stiffness = section_stiffness(SECTION, MATERIAL, Fields(2), STRAIGHT)
     m00, m01, m11 = axial_matrices(4)
     mixed = np.kron(m01, stiffness.s01)
     expected = np.kron(LENGTH / 2.0 * m00, stiffness.s00) + mixed + mixed.T + np.kron(2.0 / LENGTH * m11, stiffness.s11)
@@ -27,7 +27,7 @@ def test_element_is_the_kronecker_sum() -> None:
 
 @pytest.mark.parametrize("level", [1, 2, 5])
 def test_only_the_six_rigid_motions_cost_no_energy(level: int) -> None:
-    stiffness = element_stiffness(LENGTH, 3, section_stiffness(SECTION, MATERIAL, Fields(level)))
+    stiffness = element_stiffness(LENGTH, 3, section_stiffness(SECTION, MATERIAL, Fields(level), STRAIGHT))
     eigenvalues = np.linalg.eigvalsh(stiffness)
     scale = eigenvalues[-1]
     assert np.abs(eigenvalues[:6]).max() < 1e-13 * scale
@@ -58,7 +58,7 @@ def test_tension_with_contraction_is_exact_at_h2() -> None:
             (V, 0, 1): np.full(3, -0.3 * half_y),
         },
     )
-    force = element_stiffness(LENGTH, 2, section_stiffness(SECTION, MATERIAL, Fields(2))) @ degrees
+    force = element_stiffness(LENGTH, 2, section_stiffness(SECTION, MATERIAL, Fields(2), STRAIGHT)) @ degrees
     expected = np.zeros((3, Fields(2).count))
     expected[:2, Fields(2).index(W, 0, 0)] = np.array([-1.0, 1.0]) * SECTION.width * SECTION.height
     np.testing.assert_allclose(force.reshape(3, -1), expected, atol=1e-9)
@@ -80,7 +80,7 @@ def test_pure_bending_with_its_anticlastic_shape_is_exact_at_h2() -> None:
             (U, 1, 1): np.full(3, 0.3 * half_x * half_y / 3.0),
         },
     )
-    force = element_stiffness(LENGTH, 2, section_stiffness(SECTION, MATERIAL, Fields(2))) @ degrees
+    force = element_stiffness(LENGTH, 2, section_stiffness(SECTION, MATERIAL, Fields(2), STRAIGHT)) @ degrees
     moment_of_area = SECTION.width * SECTION.height**3 / 12.0
     expected = np.zeros((3, Fields(2).count))
     expected[:2, Fields(2).index(W, 0, 1)] = np.array([1.0, -1.0]) * moment_of_area / (half_y / np.sqrt(3.0))
@@ -88,10 +88,10 @@ def test_pure_bending_with_its_anticlastic_shape_is_exact_at_h2() -> None:
 
 
 def test_condensed_element_answers_as_the_whole() -> None:
-    section = section_stiffness(SECTION, MATERIAL, Fields(3))
+    section = section_stiffness(SECTION, MATERIAL, Fields(3), STRAIGHT)
     whole, element = (
         element_stiffness(LENGTH, 5, section),
-        condensed_element(element_family(5, Fields(3), section), LENGTH),
+        condensed_element(element_family(5, Fields(3), section, reversible=True), LENGTH),
     )
     n = len(element.condensed)
     schur = whole[:n, :n] - whole[:n, n:] @ np.linalg.solve(whole[n:, n:], whole[n:, :n])
