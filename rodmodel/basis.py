@@ -208,7 +208,7 @@ def _require_orthonormal(basis: SectionBasis) -> None:
     loss = float(np.max(np.abs((values * (weight / np.sum(weight))) @ values.T - np.eye(basis.count))))
     if not loss <= _LARGEST_LOSS:
         raise ValueError(
-            f"{basis.section}: level {basis.level} needs polynomials that are too nearly dependent on so thin a section "
+            f"{basis.section}: level {basis.level} needs polynomials that are nearly dependent on so thin a section "
             f"(orthonormal to {loss:.1g} only); use level {basis.level - 1} or lower"
         )
 
@@ -277,14 +277,14 @@ def _powers(level: int, outer: float, x: Array, y: Array) -> NDArray[np.complex1
     """((x + iy) / R)^m for m = 0..level, shape (level + 1, n_points)."""
     power = np.ones((level + 1, len(x)), dtype=np.complex128)
     power[1:] = (x + 1j * y) / outer
-    return np.cumprod(power, axis=0)
+    return np.asarray(np.cumprod(power, axis=0))
 
 
 def _angular(basis: SectionBasis, power: NDArray[np.complex128]) -> Array:
     """Re z^m where j is even, Im z^m where it is odd, shape (n_functions, n_points)."""
     i, j = basis.degrees
     odd = j % 2
-    return np.where(odd[:, None] == 1, power.imag[i + odd], power.real[i + odd])
+    return np.asarray(np.where(odd[:, None] == 1, power.imag[i + odd], power.real[i + odd]))
 
 
 def _chosen(basis: SectionBasis, radial: Array) -> Array:

@@ -62,6 +62,7 @@ def extents(section: Section) -> tuple[float, float, float, float]:
     return -x_max, x_max, -y_max, y_max
 
 
+@lru_cache(maxsize=32)
 def mirror_planes(section: Section) -> tuple[bool, bool]:
     """Whether the section is its own mirror image in x = 0 and in y = 0.
 
@@ -93,7 +94,7 @@ def outline(section: Polygon) -> tuple[Array, ...]:
     area = 0.0
     for n, corners in enumerate(loops):
         following = np.roll(corners, -1, axis=0)
-        twice = corners[:, 0] * following[:, 1] - corners[:, 1] * following[:, 0]
+        twice = _cross(corners, following)
         if (np.sum(twice) > 0.0) != (n == 0):
             loops[n] = corners[::-1]
             twice = -twice
@@ -141,44 +142,57 @@ def _annulus(degree: int, inner: float, outer: float) -> tuple[Array, Array, Arr
 
 
 def _trapezoids(degree: int, section: Polygon) -> tuple[Array, Array, Array]:
-    """Slabs between the heights of neighbouring corners; in a slab the edges pair up, left and right.
-
-    x = left(y) + (right(y) - left(y)) xi makes a polynomial of degree d one of degree d in xi and d + 1 in y.
-    """
-    starts, ends = _edges(section)
-    slack = _SAME * _size(section)
-    heights = np.unique(starts[:, 1])
-    low, high = heights[:-1], heights[1:]
-    thick = high - low > 1e-13 * (heights[-1] - heights[0])  # thinner slabs are corners meant to be level
-    low, high = low[thick], high[thick]
-
-    middle = 0.5 * (low + high)[:, None]
-    crossed = (np.minimum(starts[:, 1], ends[:, 1]) < middle) & (middle < np.maximum(starts[:, 1], ends[:, 1]))
-    rise = ends[:, 1] - starts[:, 1]
-    slope = np.divide(ends[:, 0] - starts[:, 0], rise, out=np.zeros_like(rise), where=rise != 0.0)
-    x_middle = np.where(crossed, starts[:, 0] + slope * (middle - starts[:, 1]), np.inf)
-    order = np.argsort(x_middle, axis=1)
-    slab, pair = np.nonzero(np.arange(0, order.shape[1] - 1, 2) + 1 < np.count_nonzero(crossed, axis=1)[:, None])
-    left, right = order[slab, 2 * pair], order[slab, 2 * pair + 1]
-    low, high = low[slab], high[slab]
-
-    def along(edge: NDArray[np.intp], y: Array) -> Array:
-        share = (y - starts[edge, 1]) / rise[edge]
-        return starts[edge, 0] + share * (ends[edge, 0] - starts[edge, 0])
-
-    narrowest = min(float(np.min(along(right, y) - along(left, y))) for y in (low, high))
+    """Between edges, x = left(y) + (right(y) - left(y)) xi: degree d in (x, y) is d in xi and d + 1 in y."""
+    heights, lefts, rights = _slabs(section)
     xi, weight_x = gauss(degree // 2 + 1)
     eta, weight_y = gauss((degree + 1) // 2 + 1)
-    y = 0.5 * (low + high) + np.multiply.outer(eta, 0.5 * (high - low))  # (n_y, n_trapezoids)
-    x_left, x_right = along(left, y), along(right, y)
-    x = 0.5 * (x_left + x_right) + np.multiply.outer(xi, 0.5 * (x_right - x_left))
-    across = weight_y[:, None] * 0.25 * (high - low) * (x_right - x_left)
-    weight = np.multiply.outer(weight_x, across)
+    share = np.stack([0.5 * (1.0 - eta), 0.5 * (1.0 + eta)])
+    y, left, right = heights @ share, lefts @ share, rights @ share  # (n_trapezoids, n_y)
+    half = 0.5 * (right - left)
+    x = (0.5 * (left + right))[..., None] + half[..., None] * xi
+    weight = (0.5 * (heights[:, 1:] - heights[:, :1]) * weight_y * half)[..., None] * weight_x
+    return x.ravel(), np.repeat(y, len(xi)), weight.ravel()
 
-    twice_areas = [float(np.sum(np.cross(c, np.roll(c, -1, axis=0)))) for c in outline(section)]
-    if narrowest < -slack or not math.isclose(float(np.sum(weight)), 0.5 * sum(twice_areas), rel_tol=1e-8):
+
+@lru_cache(maxsize=32)
+def _slabs(section: Polygon) -> tuple[Array, Array, Array]:
+    """The trapezoids: y of their parallel sides, x of the left and of the right edge there, each (n_trapezoids, 2).
+
+    Between the heights of neighbouring corners the edges pair up, left and right.
+    """
+    starts, ends = _edges(section)
+    levels = np.unique(starts[:, 1])
+    slabs = np.stack([levels[:-1], levels[1:]], axis=1)
+    slabs = slabs[np.ptp(slabs, axis=1) > 1e-13 * (levels[-1] - levels[0])]  # thinner ones: corners meant to be level
+
+    middle = np.mean(slabs, axis=1)[:, None]
+    rise = ends[:, 1] - starts[:, 1]
+    crossed = (np.minimum(starts[:, 1], ends[:, 1]) < middle) & (middle < np.maximum(starts[:, 1], ends[:, 1]))
+    share = np.divide(middle - starts[:, 1], rise, out=np.zeros(crossed.shape), where=crossed)
+    x_middle = np.where(crossed, starts[:, 0] + share * (ends[:, 0] - starts[:, 0]), np.inf)
+    order = np.argsort(x_middle, axis=1)
+    last = np.arange(1, order.shape[1], 2)
+    slab, pair = np.nonzero(last < np.count_nonzero(crossed, axis=1)[:, None])
+
+    def at_sides(edge: NDArray[np.intp]) -> Array:
+        along = (slabs[slab] - starts[edge, 1:]) / rise[edge, None]
+        return np.asarray(starts[edge, :1] + along * (ends[edge, :1] - starts[edge, :1]))
+
+    heights, lefts, rights = slabs[slab], at_sides(order[slab, last[pair] - 1]), at_sides(order[slab, last[pair]])
+    area = 0.5 * float(np.sum(np.ptp(heights, axis=1)[:, None] * (rights - lefts)))
+    if np.min(rights - lefts) < -_SAME * _size(section) or not math.isclose(area, _outline_area(section), rel_tol=1e-8):
         raise ValueError(
-            "polygon: found edges that cross, or a hole outside the section or within another; "
-            "give outer corners in order around the section and holes inside it"
+            f"polygon with corners {section.outer}: found edges that cross, or a hole outside or within another; "
+            "give the corners in order around the section, and holes inside it that do not overlap"
         )
-    return x.ravel(), np.broadcast_to(y, x.shape).ravel(), weight.ravel()
+    for sides in (heights, lefts, rights):
+        sides.flags.writeable = False
+    return heights, lefts, rights
+
+
+def _outline_area(section: Polygon) -> float:
+    return 0.5 * sum(float(np.sum(_cross(corners, np.roll(corners, -1, axis=0)))) for corners in outline(section))
+
+
+def _cross(first: Array, second: Array) -> Array:
+    return np.asarray(first[:, 0] * second[:, 1] - first[:, 1] * second[:, 0])
