@@ -32,7 +32,7 @@ def section_quadrature(section: Section, degree: int) -> tuple[Array, Array, Arr
     Raises
     ------
     ValueError
-        if the corners of a polygon go around no area of its own: edges cross, or a hole lies outside.
+        if a polygon's edges cross, or a hole lies outside it or overlaps another.
     """
     if isinstance(section, Rectangle):
         return _rectangles(degree, np.zeros((1, 2)), np.array([[section.width, section.height]]))
@@ -180,10 +180,12 @@ def _slabs(section: Polygon) -> tuple[Array, Array, Array]:
 
     heights, lefts, rights = slabs[slab], at_sides(order[slab, last[pair] - 1]), at_sides(order[slab, last[pair]])
     area = 0.5 * float(np.sum(np.ptp(heights, axis=1)[:, None] * (rights - lefts)))
-    if np.min(rights - lefts) < -_SAME * _size(section) or not math.isclose(area, _outline_area(section), rel_tol=1e-8):
+    gaps = (lefts[1:] - rights[:-1])[slab[1:] == slab[:-1]]
+    in_order = min(np.min(rights - lefts), np.min(gaps, initial=0.0)) >= -_SAME * _size(section)
+    if not in_order or not math.isclose(area, _outline_area(section), rel_tol=1e-8):
         raise ValueError(
-            f"polygon with corners {section.outer}: found edges that cross, or a hole outside or within another; "
-            "give the corners in order around the section, and holes inside it that do not overlap"
+            "polygon: found edges that cross, or a hole that is outside or overlaps another; "
+            "give the corners in order around the section, and holes inside it, apart from each other"
         )
     for sides in (heights, lefts, rights):
         sides.flags.writeable = False
