@@ -19,6 +19,8 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from cases.polygon import centroid, crosses_itself, depth, edges_meet, signed_area
+
 _Array = NDArray[np.float64]
 Vector = tuple[float, float, float]
 End = Literal["start", "end"]
@@ -172,19 +174,29 @@ class Polygon:
     holes: tuple[tuple[tuple[float, float], ...], ...] = ()
 
     def __post_init__(self) -> None:
-        for key, corners in (("outer", self.outer), *((f"holes #{n}", hole) for n, hole in enumerate(self.holes, 1))):
+        loops = (("outer", self.outer), *((f"holes #{n}", hole) for n, hole in enumerate(self.holes, 1)))
+        for key, corners in loops:
             _require(len(corners) >= 3, key, f"{len(corners)} corners", "at least three are needed")
             finite = all(len(corner) == 2 and bool(np.all(np.isfinite(corner))) for corner in corners)
             _require(finite, key, [list(corner) for corner in corners], "corners are pairs of finite numbers")
-            _require(abs(_signed_area(corners)) > 0.0, key, "corners without an area", "they must go around one")
-        holes = sum(abs(_signed_area(hole)) for hole in self.holes)
-        ok = holes < abs(_signed_area(self.outer))
-        _require(ok, "holes", f"{holes:g} mm^2 of holes", "the holes must lie within the outer corners")
+            again = next((list(a) for a, b in zip(corners, (*corners[1:], corners[0]), strict=True) if a == b), None)
+            _require(again is None, key, f"{again} twice in a row", "name each corner once, the first one too")
+            remedy = "name the corners in order around the section"
+            _require(not crosses_itself(corners), key, "edges that cross or touch each other", remedy)
+            _require(signed_area(corners) != 0.0, key, "corners along one line", remedy)
+        for index, (key, hole) in enumerate(loops[1:]):
+            inside = depth(self.outer, hole[0]) > 0.0 and not edges_meet(self.outer, hole).any()
+            _require(inside, key, "corners on or beyond the outer edges", "a hole lies within the section")
+            for other in self.holes[:index]:
+                apart = not edges_meet(other, hole).any()
+                apart = apart and depth(other, hole[0]) < 0.0 and depth(hole, other[0]) < 0.0
+                _require(apart, key, "corners within another hole", "holes lie apart from each other")
 
-
-def _signed_area(corners: tuple[tuple[float, float], ...]) -> float:
-    x, y = np.array(corners, dtype=float).T
-    return 0.5 * float(np.dot(x, np.roll(y, -1)) - np.dot(y, np.roll(x, -1)))
+    @property
+    def centroid(self) -> tuple[float, float]:
+        """Centre of area in the coordinates of the corners, mm; it is the origin of the section's x and y."""
+        x, y = centroid(self.outer, self.holes)
+        return float(x), float(y)
 
 
 Section = Rectangle | Circle | Ring | Box | Polygon
@@ -254,12 +266,23 @@ class Helix:
         from_axis = np.linalg.norm(np.subtract(self.start, self.centre))
         ok = self.radius > 1e-9 * float(from_axis)
         _require(ok, "start", list(self.start), "the start must not lie on the axis")
+        normal_part = np.linalg.norm(np.cross(self.start_tangent, self.up))
+        ok = float(normal_part) > 1e-9 * float(np.linalg.norm(self.up))
+        _require(ok, "up", list(self.up), "give a direction that is not along the line at its start")
 
     @property
     def radius(self) -> float:
         """Distance of the line from the axis, mm."""
         axis = np.asarray(self.axis) / np.linalg.norm(self.axis)
         return float(np.linalg.norm(np.cross(axis, np.subtract(self.start, self.centre))))
+
+    @property
+    def start_tangent(self) -> tuple[float, float, float]:
+        """Direction of the line at its start, a unit vector."""
+        axis = np.asarray(self.axis) / np.linalg.norm(self.axis)
+        around = np.cross(axis, np.subtract(self.start, self.centre)) + self.pitch / (2.0 * math.pi) * axis
+        x, y, z = (around / np.linalg.norm(around)).tolist()
+        return x, y, z
 
     @property
     def length(self) -> float:
@@ -296,12 +319,45 @@ class Rod:
         length = self.centre_line.length
         ok = borders[0] == 0.0 and math.isclose(borders[-1], length, rel_tol=_ROUNDED)
         _require(ok, key, f"{borders[0]:g} .. {borders[-1]:g}", f"borders must run from 0 to {length:g} mm")
+        rising = borders[-2] < length
+        _require(rising, key, f"{borders[-2]:g} .. {borders[-1]:g}", f"the last border is the rod's end, {length:g} mm")
         object.__setattr__(self, "element_borders", (*borders[:-1], length))
+        if isinstance(self.centre_line, Helix):
+            _require_roomy(self.centre_line, self.section, f"rods.{self.name}.centre_line")
 
     @property
     def length(self) -> float:
         """Arc length of the centre line, mm."""
         return self.centre_line.length
+
+
+def _require_roomy(helix: Helix, section: Section, key: str) -> None:
+    """See that the sections do not overlap on the inner side of the curve, where sqrt(g) must be positive."""
+    axis = np.asarray(helix.axis) / np.linalg.norm(helix.axis)
+    from_centre = np.subtract(helix.start, helix.centre)
+    inwards = -(from_centre - (from_centre @ axis) * axis) / helix.radius
+    tangent = np.asarray(helix.start_tangent)
+    e2 = np.asarray(helix.up) - (tangent @ np.asarray(helix.up)) * tangent
+    e2 /= np.linalg.norm(e2)
+    direction = np.array([inwards @ np.cross(e2, tangent), inwards @ e2])
+    reach = section_reach(section, direction)
+    advance = helix.pitch / (2.0 * math.pi)
+    radius = helix.radius * (1.0 + (advance / helix.radius) ** 2)
+    found = f"a radius of curvature of {radius:g} mm"
+    _require(reach < radius, key, found, f"it must be larger than the section's {reach:g} mm on the inner side")
+
+
+def section_reach(section: Section, direction: _Array) -> float:
+    """How far a section reaches from its centroid along a unit direction (x, y), mm."""
+    match section:
+        case Circle():
+            return section.diameter / 2.0
+        case Ring():
+            return section.outer_diameter / 2.0
+        case Polygon():
+            return float(np.max((np.array(section.outer) - section.centroid) @ direction))
+        case Rectangle() | Box():
+            return float(np.abs(direction) @ (section.width, section.height)) / 2.0
 
 
 @dataclass(frozen=True)
@@ -439,12 +495,8 @@ class Scene:
             self._rod_at(f"{key}.{side}.rod", face.rod)
             remedy = f"write one of {', '.join(FACES)}"
             _require(face.face in FACES, f"{key}.{side}.face", f"'{face.face}'", remedy)
-        for side, face in (("first", pair.first), ("second", pair.second)):
-            rod = self.rod(face.rod)
-            ok = isinstance(rod.section, Rectangle | Box) and isinstance(rod.centre_line, Line)
-            ok = ok and rod.centre_line.twist == 0.0  # type: ignore[union-attr]
-            remedy = "contact is between flat faces of straight rods with rectangular or box sections"
-            _require(ok, f"{key}.{side}.rod", f"'{rod.name}'", remedy)
+        first = _face_geometry(self.rod(pair.first.rod), pair.first.face, f"{key}.first.rod")
+        second = _face_geometry(self.rod(pair.second.rod), pair.second.face, f"{key}.second.rod")
         different = pair.first.rod != pair.second.rod
         _require(different, f"{key}.second.rod", f"'{pair.second.rod}'", "a pair needs two different rods")
         rod = self.rod(pair.first.rod)
@@ -454,7 +506,7 @@ class Scene:
         _require(ok, f"{key}.zone", f"{start:g} .. {end:g}", remedy)
         _require(math.isfinite(pair.gap), f"{key}.gap", f"{pair.gap:g}", "a finite length is needed")
         _require_positive(pair.penalty, f"{key}.penalty", "a penalty")
-        _require_facing(pair, rod, self.rod(pair.second.rod), key)
+        _require_facing(pair, first, second, key)
 
     def rod(self, name: str) -> Rod:
         """The rod called `name`; KeyError if there is none."""
@@ -485,27 +537,43 @@ def _check_load(load: Load, rod: Rod, key: str) -> None:
 
 @dataclass(frozen=True)
 class _FaceGeometry:
-    """A lateral face of a straight rod: outward normal, direction across it and half its width along that."""
+    """A flat lateral face of a straight rod.
 
+    Attributes
+    ----------
+    start, end : of the rod's centre line, mm
+    normal : outward
+    across : direction across the face
+    half_width : half its width along `across`, mm
+    """
+
+    start: _Array
+    end: _Array
     normal: _Array
     across: _Array
     half_width: float
 
 
-def _face_geometry(rod: Rod, face: Face) -> _FaceGeometry:
+def _face_geometry(rod: Rod, face: Face, key: str) -> _FaceGeometry:
     line, section = rod.centre_line, rod.section
-    tangent = np.subtract(line.end, line.start) / line.length
+    remedy = "contact is between flat faces of straight, untwisted rods with rectangle or box sections"
+    if not isinstance(line, Line) or line.twist != 0.0:
+        raise SceneError(key, f"'{rod.name}', which is curved or twisted", remedy)
+    if not isinstance(section, Rectangle | Box):
+        raise SceneError(key, f"'{rod.name}', whose section is a {type(section).__name__.lower()}", remedy)
+    start, end = np.array(line.start, dtype=float), np.array(line.end, dtype=float)
+    tangent = (end - start) / line.length
     e2 = np.asarray(line.up) - np.dot(line.up, tangent) * tangent
     e2 /= np.linalg.norm(e2)
     e1 = np.cross(e2, tangent)
     if face in ("top", "bottom"):
-        return _FaceGeometry(e2 if face == "top" else -e2, e1, section.width / 2.0)
-    return _FaceGeometry(e1 if face == "right" else -e1, e2, section.height / 2.0)
+        return _FaceGeometry(start, end, e2 if face == "top" else -e2, e1, section.width / 2.0)
+    return _FaceGeometry(start, end, e1 if face == "right" else -e1, e2, section.height / 2.0)
 
 
-def _require_facing(pair: ContactPair, first: Rod, second: Rod, key: str) -> None:
+def _require_facing(pair: ContactPair, face: _FaceGeometry, other: _FaceGeometry, key: str) -> None:
     """See that the faces of a pair look at each other, over the whole zone."""
-    face, other = _face_geometry(first, pair.first.face), _face_geometry(second, pair.second.face)
+    names = (pair.first.rod, pair.second.rod)
     cosine = float(np.clip(np.dot(face.normal, other.normal), -1.0, 1.0))
     angle = math.degrees(math.acos(cosine))
     _require(
@@ -514,9 +582,9 @@ def _require_facing(pair: ContactPair, first: Rod, second: Rod, key: str) -> Non
         f"'{pair.second.face}', whose outward normal is turned by {angle:.0f} degrees from the first face's",
         f"choose faces that face each other (180 degrees, at least {_LEAST_FACING_ANGLE:.0f})",
     )
-    origin, length = np.asarray(first.centre_line.start), first.length
-    tangent = np.subtract(first.centre_line.end, origin) / length
-    ends = np.array([second.centre_line.start, second.centre_line.end]) - origin
+    length = float(np.linalg.norm(face.end - face.start))
+    tangent = (face.end - face.start) / length
+    ends = np.array([other.start, other.end]) - face.start
     along = ends @ tangent
     begin, stop = float(np.min(along)), float(np.max(along))
     shared = (max(0.0, begin), min(length, stop))
@@ -527,7 +595,7 @@ def _require_facing(pair: ContactPair, first: Rod, second: Rod, key: str) -> Non
         begin - slack <= start and end <= stop + slack,
         f"{key}.zone",
         f"{start:g} .. {end:g}",
-        f"rod '{second.name}' lies opposite rod '{first.name}' {where}, and the zone must be within that",
+        f"rod '{names[1]}' lies opposite rod '{names[0]}' {where}, and the zone must be within that",
     )
     # From the first rod's centre line to the second's, where the zone starts and ends.
     share = (np.array(pair.zone) - along[0]) / (along[1] - along[0])
@@ -535,7 +603,7 @@ def _require_facing(pair: ContactPair, first: Rod, second: Rod, key: str) -> Non
     _require(
         bool(np.all(offset @ face.normal > 0.0)),
         f"{key}.first.face",
-        f"'{pair.first.face}', while rod '{second.name}' is drawn on the other side of rod '{first.name}'",
+        f"'{pair.first.face}', while rod '{names[1]}' is drawn on the other side of rod '{names[0]}'",
         "choose the face that looks towards the second rod",
     )
     aside = float(np.max(np.abs(offset @ face.across)))
@@ -543,6 +611,6 @@ def _require_facing(pair: ContactPair, first: Rod, second: Rod, key: str) -> Non
     _require(
         aside < reach,
         f"{key}.second.rod",
-        f"'{second.name}', drawn {aside:g} mm aside of rod '{first.name}'",
+        f"'{names[1]}', drawn {aside:g} mm aside of rod '{names[0]}'",
         f"the faces overlap only where the centre lines are less than {reach:g} mm aside of each other",
     )

@@ -47,11 +47,17 @@ def _tolerance(value: object) -> str:
 Length = TypeAliasType("Length", Annotated[float, *_with_unit("mm")])
 Force = TypeAliasType("Force", Annotated[float, *_with_unit("N")])
 Stress = TypeAliasType("Stress", Annotated[float, *_with_unit("MPa")])
+Moment = TypeAliasType("Moment", Annotated[float, *_with_unit("N mm")])
+ForcePerLength = TypeAliasType("ForcePerLength", Annotated[float, *_with_unit("N/mm")])
+Angle = TypeAliasType("Angle", Annotated[float, *_with_unit("rad")])
 StressPerLength = TypeAliasType("StressPerLength", Annotated[float, *_with_unit("N/mm^3")])
 Number = Annotated[float, BeforeValidator(_plain_number), WithJsonSchema({"type": "number"})]
 Tolerance = Annotated[str, BeforeValidator(_tolerance), WithJsonSchema({"type": "string", "pattern": QUANTITY_PATTERN})]
 Name = Annotated[str, Field(strict=True, pattern=r"^[A-Za-z0-9_][A-Za-z0-9_ .-]*$")]
 Text = Annotated[StrictStr, Field(min_length=1)]
+Point = tuple[Length, Length, Length]
+Direction = tuple[Number, Number, Number]
+Corner = tuple[Length, Length]
 # For tables that the author names: no other names than `Name` allows.
 _ONLY_NAMES = Field(json_schema_extra={"additionalProperties": False})
 # The unit of a published value follows from its quantity, so the loader converts it.
@@ -75,8 +81,8 @@ class MaterialTable(_Table):
     """Poisson's ratio, between -1 and 0.5."""
 
 
-class SectionTable(_Table):
-    """A cross-section, in coordinates x (across) and y (towards the centre line's `up`)."""
+class RectangleTable(_Table):
+    """A rectangular cross-section, in coordinates x (across) and y (towards the centre line's `up`)."""
 
     shape: Literal["rectangle"]
     """Shape of the section: "rectangle"."""
@@ -86,18 +92,112 @@ class SectionTable(_Table):
     """Extent along y, a length; positive."""
 
 
-class CentreLineTable(_Table):
-    """The line through the centres of a rod's sections, in global axes X, Y, Z."""
+class CircleTable(_Table):
+    """A full circular cross-section."""
+
+    shape: Literal["circle"]
+    """Shape of the section: "circle"."""
+    diameter: Length
+    """Diameter, a length; positive."""
+
+
+class RingTable(_Table):
+    """The cross-section of a circular tube."""
+
+    shape: Literal["ring"]
+    """Shape of the section: "ring"."""
+    outer_diameter: Length
+    """Outer diameter, a length."""
+    inner_diameter: Length
+    """Inner diameter, a length; positive, and smaller than the outer one."""
+
+
+class BoxTable(_Table):
+    """The cross-section of a rectangular tube, in coordinates x (across) and y (towards `up`)."""
+
+    shape: Literal["box"]
+    """Shape of the section: "box"."""
+    width: Length
+    """Outer extent along x, a length; positive."""
+    height: Length
+    """Outer extent along y, a length; positive."""
+    wall: Length
+    """Thickness of the walls, a length; positive, and less than half the smaller side."""
+
+
+class PolygonTable(_Table):
+    """A cross-section with straight edges; its centroid is laid on the centre line."""
+
+    shape: Literal["polygon"]
+    """Shape of the section: "polygon"."""
+    outer: tuple[Corner, ...]
+    """Corners in order around the section, a list of pairs of lengths [x, y], such as [[0, 0], [20, 0], [0, 10]]; the
+    first is not repeated."""
+    holes: tuple[tuple[Corner, ...], ...] = ()
+    """Holes, a list of lists of corners like `outer`, within it and apart from each other."""
+
+
+SectionTable = RectangleTable | CircleTable | RingTable | BoxTable | PolygonTable
+
+
+class LineTable(_Table):
+    """A straight line through the centres of a rod's sections, in global axes X, Y, Z."""
 
     shape: Literal["line"]
     """Shape of the centre line: "line"."""
-    start: tuple[Length, Length, Length]
+    start: Point
     """Where the rod starts, three lengths [X, Y, Z], such as [0, 0, 0]."""
-    end: tuple[Length, Length, Length]
+    end: Point
     """Where the rod ends, three lengths [X, Y, Z], such as ["300 mm", 0, 0]."""
-    up: tuple[Number, Number, Number]
-    """Direction of the section's y axis, three numbers [X, Y, Z], such as [0, 1, 0]; its part along the line
-    is taken off."""
+    up: Direction
+    """Direction of the section's y axis at the start, three numbers [X, Y, Z], such as [0, 1, 0]; its part along the
+    line is taken off."""
+    twist: Angle = 0.0
+    """Angle by which the section turns about the line from start to end, at an even rate and by the right-hand
+    rule, such as "90 deg"; a bare number is in rad."""
+
+
+class ArcTable(_Table):
+    """A circular arc through the centres of a rod's sections, in global axes X, Y, Z."""
+
+    shape: Literal["arc"]
+    """Shape of the centre line: "arc"."""
+    start: Point
+    """Where the rod starts, three lengths [X, Y, Z], such as [100, 0, 0]; its distance from the axis is the radius."""
+    centre: Point
+    """A point of the axis that the arc turns about, three lengths [X, Y, Z], such as [0, 0, 0]."""
+    axis: Direction
+    """Direction of the axis, three numbers [X, Y, Z], such as [0, 0, 1]; the arc turns about it by the right-hand
+    rule."""
+    angle: Angle
+    """Angle turned from start to end, positive, such as "90 deg"; a bare number is in rad."""
+    up: Direction
+    """Direction of the section's y axis at the start, three numbers [X, Y, Z], such as [0, 0, 1]; its part along the
+    line is taken off, and the section then turns along with the arc."""
+
+
+class HelixTable(_Table):
+    """A helix through the centres of a rod's sections, in global axes X, Y, Z."""
+
+    shape: Literal["helix"]
+    """Shape of the centre line: "helix"."""
+    start: Point
+    """Where the rod starts, three lengths [X, Y, Z], such as [20, 0, 0]; its distance from the axis is the radius."""
+    centre: Point
+    """A point of the helix's axis, three lengths [X, Y, Z], such as [0, 0, 0]."""
+    axis: Direction
+    """Direction of the axis, three numbers [X, Y, Z], such as [0, 0, 1]; the helix turns about it by the right-hand
+    rule."""
+    angle: Angle
+    """Angle turned from start to end, positive, such as "1080 deg" for three turns; a bare number is in rad."""
+    pitch: Length
+    """Advance along the axis in one full turn, a length; negative for a left-hand helix."""
+    up: Direction
+    """Direction of the section's y axis at the start, three numbers [X, Y, Z], such as [0, 0, 1]; its part along the
+    line is taken off, and the section then moves along as a screw does."""
+
+
+CentreLineTable = LineTable | ArcTable | HelixTable
 
 
 class RodTable(_Table):
@@ -109,8 +209,9 @@ class RodTable(_Table):
     """Name of one of the [materials]."""
     element_borders: tuple[Length, ...]
     """Borders of the rod model's elements, a list of rising lengths from 0 to the rod's length, along the rod
-    from its start; borders inside a contact zone move to the edges of the contact."""
-    centre_line: CentreLineTable
+    from its start; borders inside a contact zone move to the edges of the contact. The last border may be rounded
+    to four digits, as the length of a curved rod is seldom a round number."""
+    centre_line: Annotated[CentreLineTable, Field(discriminator="shape")]
     """The rod's centre line, as table [rods.NAME.centre_line]."""
 
 
@@ -125,8 +226,8 @@ class SupportTable(_Table):
     """Which end of the rod: "start" or "end"."""
 
 
-class LoadTable(_Table):
-    """A load; a "section force" is spread evenly over one cross-section."""
+class SectionForceTable(_Table):
+    """A force spread evenly over one cross-section."""
 
     kind: Literal["section force"]
     """Kind of load: "section force"."""
@@ -136,6 +237,37 @@ class LoadTable(_Table):
     """Where the section is, a length along the rod from its start."""
     force: tuple[Force, Force, Force]
     """The force, three components [X, Y, Z] in global axes, such as [0, "-1 kN", 0]."""
+
+
+class SectionMomentTable(_Table):
+    """A moment on one cross-section, as the linear distribution of traction that makes it."""
+
+    kind: Literal["section moment"]
+    """Kind of load: "section moment"."""
+    rod: Text
+    """Name of one of the [rods]."""
+    position: Length
+    """Where the section is, a length along the rod from its start."""
+    moment: tuple[Moment, Moment, Moment]
+    """The moment, three components [X, Y, Z] in global axes, such as [0, 0, "2 N m"]."""
+
+
+class LineLoadTable(_Table):
+    """A force per length of the centre line, spread evenly over the cross-sections."""
+
+    kind: Literal["line load"]
+    """Kind of load: "line load"."""
+    rod: Text
+    """Name of one of the [rods]."""
+    start: Length
+    """Where the load begins, a length along the rod from its start."""
+    end: Length
+    """Where it ends, a length along the rod from its start."""
+    force: tuple[ForcePerLength, ForcePerLength, ForcePerLength]
+    """The force per length, three components [X, Y, Z] in global axes, such as [0, "-2 kN/m", 0]."""
+
+
+LoadTable = SectionForceTable | SectionMomentTable | LineLoadTable
 
 
 class RodFaceTable(_Table):
@@ -180,7 +312,7 @@ class CompareTable(_Table):
     """Name of one of the [rods], for a quantity of a rod."""
     contact: Text | None = None
     """Name of one of the [contacts], for a quantity of a contact pair."""
-    point: tuple[Length, Length, Length] | None = None
+    point: Point | None = None
     """Point of a rod, three lengths [x, y, s]: x and y in the section, s along the rod; for stress_s."""
     tolerance: Tolerance
     """Largest difference that passes, with its unit: "0.3 %" of the value (of a curve's largest value), or
@@ -208,7 +340,7 @@ class PublishedTable(_Table):
 class CaseFile(_Table):
     """A case of rodcheck: rods, what acts on them, and what their solutions are held against.
 
-    A number with a unit is a string, such as "200 GPa"; a bare number is in mm, N or MPa. A key [rods.NAME]
+    A number with a unit is a string, such as "200 GPa"; a bare number is in mm, N, MPa or rad. A key [rods.NAME]
     is a table of its own for every name.
     """
 
@@ -220,13 +352,13 @@ class CaseFile(_Table):
     """Name of a file in cases/truth with 3D values made outside this project."""
     materials: Annotated[dict[Name, MaterialTable], _ONLY_NAMES]
     """The materials, one table [materials.NAME] each."""
-    sections: Annotated[dict[Name, SectionTable], _ONLY_NAMES]
+    sections: Annotated[dict[Name, Annotated[SectionTable, Field(discriminator="shape")]], _ONLY_NAMES]
     """The cross-sections, one table [sections.NAME] each."""
     rods: Annotated[dict[Name, RodTable], _ONLY_NAMES]
     """The rods, one table [rods.NAME] each."""
     supports: tuple[SupportTable, ...]
     """The supports, one [[supports]] each."""
-    loads: tuple[LoadTable, ...] = ()
+    loads: tuple[Annotated[LoadTable, Field(discriminator="kind")], ...] = ()
     """The loads, one [[loads]] each."""
     contacts: Annotated[dict[Name, ContactTable], _ONLY_NAMES] = {}
     """The contact pairs, one table [contacts.NAME] each."""

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Literal
 if TYPE_CHECKING:
     import pint
 
-Unit = Literal["mm", "N", "MPa", "N mm", "N/mm^3", "%"]
+Unit = Literal["mm", "N", "MPa", "N mm", "N/mm", "N/mm^3", "rad", "%"]
 
 # Beyond any length, force or stress, and far from where their products overflow.
 LARGEST = 1e30
@@ -26,9 +26,14 @@ EXAMPLES: dict[Unit, tuple[str, str]] = {
     "N": ("a force", '1000 (N) or "1 kN"'),
     "MPa": ("a stress", '200000 (MPa) or "200 GPa"'),
     "N mm": ("a moment", '1000 (N mm) or "1 N m"'),
+    "N/mm": ("a force per length", '2 (N/mm) or "2 kN/m"'),
     "N/mm^3": ("a stress per length", '1e6 (N/mm^3) or "1e6 N/mm^3"'),
+    "rad": ("an angle", '1.5708 (rad) or "90 deg"'),
     "%": ("a relative tolerance", '"0.1 %"'),
 }
+
+# These have no dimension, but neither have mm/m: only their own signs count.
+_SIGNS: dict[Unit, tuple[str, ...]] = {"%": ("%", "percent"), "rad": ("rad", "radian", "deg", "degree")}
 
 _DEFINITIONS = """
 micro- = 1e-6 = µ- = u-
@@ -49,6 +54,8 @@ bar = 1e5 * pascal
 psi = pound_force / inch ** 2
 ksi = 1000 * psi
 percent = 0.01 = %
+radian = [] = rad
+degree = 0.017453292519943295769236907684886 * radian = deg
 """
 
 _NUMBER = r"[+-]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][+-]?\d{1,3})?"
@@ -116,8 +123,7 @@ def to_unit(value: object, wanted: Unit) -> float:
     remedy = f"{what} is needed, such as {example}"
     if isinstance(value, str):
         match = _QUANTITY.fullmatch(value)
-        # A percentage has no dimension, but neither have mm/m: only the sign itself counts.
-        fits = match is not None and (wanted != "%" or match["unit"] in ("%", "percent"))
+        fits = match is not None and (wanted not in _SIGNS or match["unit"] in _SIGNS[wanted])
         factor = _factor(match["unit"], wanted) if match and fits else None
         if match is None or factor is None:
             raise UnitError(remedy)

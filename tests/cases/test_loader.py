@@ -3,6 +3,7 @@
 Every mistake is a small edit of a case of the library.
 """
 
+import math
 import re
 
 import pytest
@@ -10,6 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from cases.loader import LIBRARY, CaseError, library_names, load_case
+from cases.scene import Box, Circle, Helix, Line, LineLoad, Polygon, Ring, SectionForce, SectionMoment
 
 GOOD = (LIBRARY / "two-cantilevers-e50-g05.toml").read_text(encoding="utf-8")
 
@@ -85,7 +87,33 @@ MISTAKES = [
     ("bad component", [('"-1 kN"', '"-1 km"')], "loads #1.force #2", '"-1 km"', "a force"),
     ("number for a table", [("first = {", "first = 3 #")], "contacts.overlap.first", "3", "such as { rod"),
     ("text for a list", [("zone = [", 'zone = "200" # [')], "contacts.overlap.zone", '"200"', "two rising"),
-    ("unknown shape", [('"rectangle"', '"circle"')], "sections.square.shape", '"circle"', "'rectangle'"),
+    ("unknown shape", [('"rectangle"', '"rectangel"')], "sections.square.shape", '"rectangel"', "mean 'rectangle'?"),
+    ("shape of another kind", [('"rectangle"', "3")], "sections.square.shape", "3", "'box', 'circle', 'polygon'"),
+    ("no shape", [('shape = "rectangle"', "")], "sections.square.shape", "no such key", "'rectangle', 'ring'"),
+    ("keys of another shape", [('"rectangle"', '"circle"')], "sections.square.width", "unknown key", "'diameter'"),
+    ("unknown line", [('shape = "line"', 'shape = "spiral"')], "rods.lower.centre_line.shape", '"spiral"', "'helix'"),
+    (
+        "twist as length",
+        [("end = [300", 'twist = "3 mm"\nend = [300')],
+        "rods.lower.centre_line.twist",
+        "mm",
+        '"90 deg"',
+    ),
+    ("unknown load", [('"section force"', '"line laod"')], "loads #1.kind", '"line laod"', "did you mean 'line load'?"),
+    (
+        "keys of another load",
+        [('"section force"', '"line load"')],
+        "loads #1.position",
+        "unknown key",
+        "'start', 'end'",
+    ),
+    (
+        "force for a moment",
+        [('"section force"', '"section moment"'), ("force = ", "moment = ")],
+        "loads #1.moment #1",
+        '"0 N"',
+        '"1 N m"',
+    ),
     ("unknown face", [('"top"', '"upper"')], "contacts.overlap.first.face", '"upper"', "'top', 'bottom'"),
     ("unknown end", [('end = "start"', 'end = "left"')], "supports #1.end", '"left"', "'start' or 'end'"),
     ("level 0", [("level = 5", "level = 0")], "rod_model.level", "0", "from 1 to 12"),
@@ -320,6 +348,190 @@ def test_a_misspelt_key_is_not_reported_as_missing_too(message):
     text = message(edited(("poisson_ratio", "poison_ratio")))
 
     assert text == ("mine.toml: materials.lower.poison_ratio: found an unknown key; did you mean 'poisson_ratio'?")
+
+
+ARC = """shape = "arc"
+start = [100, 0, 0]
+centre = [0, 0, 0]
+axis = [0, 0, 1]
+angle = "90 deg"
+up = [0, 0, 1]"""
+SQUARE = '''shape = "rectangle"
+width = "10 mm"
+height = "10 mm"'''
+FORCE = """kind = "section force"
+rod = "spring"
+position = "50 mm"
+force = [0, 0, "-2 N"]"""
+
+
+def single(section=SQUARE, line=ARC, load=FORCE, borders="[0, 157.08]", more=""):
+    """A case of one rod."""
+    return f"""
+title = "One rod"
+[materials.steel]
+young_modulus = "200 GPa"
+poisson_ratio = 0.3
+[sections.profile]
+{section}
+[rods.spring]
+section = "profile"
+material = "steel"
+element_borders = {borders}
+[rods.spring.centre_line]
+{line}
+[[supports]]
+kind = "clamp"
+rod = "spring"
+end = "start"
+[[loads]]
+{load}
+[rod_model]
+level = 3
+order = 5
+{more}
+"""
+
+
+@pytest.fixture
+def scene(tmp_path):
+    """The scene of a case file of this content."""
+
+    def load(content):
+        path = tmp_path / "mine.toml"
+        path.write_text(content, encoding="utf-8")
+        return load_case(path).scene
+
+    return load
+
+
+@pytest.mark.parametrize(
+    ("section", "meant"),
+    [
+        ('shape = "circle"\ndiameter = "1 cm"', Circle(10.0)),
+        ('shape = "ring"\nouter_diameter = 10\ninner_diameter = 8', Ring(10.0, 8.0)),
+        ('shape = "box"\nwidth = 10\nheight = 20\nwall = "1 mm"', Box(10.0, 20.0, 1.0)),
+        (
+            'shape = "polygon"\nouter = [[0, 0], ["9 mm", 0], [0, 9]]\nholes = [[[1, 1], [2, 1], [1, 2]]]',
+            Polygon(((0.0, 0.0), (9.0, 0.0), (0.0, 9.0)), (((1.0, 1.0), (2.0, 1.0), (1.0, 2.0)),)),
+        ),
+    ],
+)
+def test_every_section_can_be_written(scene, section, meant):
+    assert scene(single(section=section)).rods[0].section == meant
+
+
+@pytest.mark.parametrize(
+    ("line", "borders", "meant"),
+    [
+        (ARC, "[0, 157.08]", Helix((100, 0, 0), (0, 0, 0), (0, 0, 1), math.pi / 2, (0, 0, 1))),
+        (
+            ARC.replace("arc", "helix").replace("90", "1080") + "\npitch = -30",
+            "[0, 1887.1]",
+            Helix((100, 0, 0), (0, 0, 0), (0, 0, 1), 6 * math.pi, (0, 0, 1), -30.0),
+        ),
+        (
+            'shape = "line"\nstart = [0, 0, 0]\nend = [60, 0, 0]\nup = [0, 1, 0]\ntwist = "-45 deg"',
+            "[0, 60]",
+            Line((0, 0, 0), (60, 0, 0), (0, 1, 0), -math.pi / 4),
+        ),
+    ],
+)
+def test_every_centre_line_can_be_written(scene, line, borders, meant):
+    rod = scene(single(line=line, borders=borders)).rods[0]
+
+    assert rod.centre_line == meant
+    assert rod.element_borders[-1] == meant.length  # the rounded border is set to it
+
+
+@pytest.mark.parametrize(
+    ("load", "meant"),
+    [
+        (FORCE, SectionForce("spring", 50.0, (0.0, 0.0, -2.0))),
+        (
+            FORCE.replace("force", "moment").replace("-2 N", "3 N m"),
+            SectionMoment("spring", 50.0, (0.0, 0.0, 3000.0)),
+        ),
+        (
+            'kind = "line load"\nrod = "spring"\nstart = 0\nend = "50 mm"\nforce = [0, "2 kN/m", 0]',
+            LineLoad("spring", 0.0, 50.0, (0.0, 2.0, 0.0)),
+        ),
+    ],
+)
+def test_every_load_can_be_written(scene, load, meant):
+    assert scene(single(load=load)).loads == (meant,)
+
+
+HOLLOW = 'shape = "ring"\nouter_diameter = 10\ninner_diameter = 8'
+POLYGON = 'shape = "polygon"\nouter = [[0, 0], [9, 0], [9, 9], [0, 9]]'
+LINE_LOAD = 'kind = "line load"\nrod = "spring"\nstart = 20\nend = 40\nforce = [0, 2, 0]'
+
+
+def stress_at(point):
+    return f'[[compare]]\nquantity = "stress_s"\nrod = "spring"\npoint = {point}\ntolerance = "1 %"'
+
+
+@pytest.mark.parametrize(
+    ("content", "key", "found", "remedy"),
+    [
+        (
+            single(section=HOLLOW.replace("= 8", "= 12")),
+            "sections.profile.outer_diameter",
+            "10",
+            "larger than",
+        ),
+        (
+            single(section=POLYGON.replace("[9, 9], [0, 9]", "[0, 9], [9, 9]")),
+            "sections.profile.outer",
+            "cross",
+            "order",
+        ),
+        (single(section=POLYGON.replace(", [9, 9], [0, 9]", "")), "sections.profile.outer", "2 corners", "three"),
+        (single(section=POLYGON.replace("[9, 9]", "[9]")), "sections.profile.outer #3", "[9]", "pairs of lengths"),
+        (single(section=POLYGON.replace("[9, 9]", '["9 kg", 9]')), "sections.profile.outer #3 #1", "kg", "a length"),
+        (
+            single(section=POLYGON + "\nholes = [[[8, 8], [12, 8], [8, 12]]]"),
+            "sections.profile.holes #1",
+            "beyond the outer edges",
+            "within",
+        ),
+        (single(section=SQUARE.replace('"10 mm"', "300")), "rods.spring.centre_line", "100 mm", "larger than"),
+        (single(line=ARC.replace("[100, 0, 0]", "[0, 0, 5]")), "rods.spring.centre_line.start", "[0", "on the axis"),
+        (single(line=ARC.replace('"90 deg"', '"-90 deg"')), "rods.spring.centre_line.angle", "-1.5708", "positive"),
+        (single(line=ARC.replace('"90 deg"', '"90 mm"')), "rods.spring.centre_line.angle", '"90 mm"', '"90 deg"'),
+        (single(line=ARC.replace("up = [0, 0, 1]", "up = [0, 1, 0]")), "rods.spring.centre_line.up", "[0", "along"),
+        (single(line=ARC.replace("arc", "helix")), "rods.spring.centre_line.pitch", "no such key", "one full turn"),
+        (single(line=ARC + "\npitch = 3"), "rods.spring.centre_line.pitch", "unknown key", "'angle'"),
+        (single(borders="[0, 150]"), "rods.spring.element_borders", "0 .. 150", "157.08"),
+        (single(load=LINE_LOAD.replace("40", "10")), "loads #1.start", "20 .. 10", "rising stretch"),
+        (single(load=LINE_LOAD.replace("40", "400")), "loads #1.start", "20 .. 400", "runs from 0 to 157.08 mm"),
+        (single(load=LINE_LOAD.replace("2, 0]", '"2 N", 0]')), "loads #1.force #2", '"2 N"', "force per length"),
+        (single(section=HOLLOW, more=stress_at("[0, 3, 9]")), "compare #1.point", "[0.0, 3.0, 9.0]", "between 4 and 5"),
+        (single(section=POLYGON, more=stress_at("[5, 0, 9]")), "compare #1.point", "[5.0", "counted from the centroid"),
+    ],
+)
+def test_a_mistake_in_any_shape_or_load_is_named_likewise(message, content, key, found, remedy):
+    text = message(content)
+
+    start, _, rest = text.partition(": found ")
+    assert start == f"mine.toml: {key}"
+    assert found in rest.partition("; ")[0]
+    assert remedy in rest.partition("; ")[2]
+
+
+@pytest.mark.parametrize(
+    ("section", "point"),
+    [
+        (SQUARE, "[5, -5, 0]"),
+        (HOLLOW, "[0, -4, 0]"),
+        ('shape = "circle"\ndiameter = 10', "[3, 4, 0]"),
+        ('shape = "box"\nwidth = 10\nheight = 20\nwall = 1', "[4, 0, 0]"),
+        (POLYGON, "[4.5, 4.5, 0]"),
+        (POLYGON + "\nholes = [[[4, 4], [5, 4], [5, 5], [4, 5]]]", "[0.5, 0.5, 0]"),
+    ],
+)
+def test_a_stress_may_be_asked_for_on_the_border_of_a_section(scene, section, point):
+    assert scene(single(section=section, more=stress_at(point))).rods
 
 
 @pytest.mark.parametrize(

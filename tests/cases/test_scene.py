@@ -1,20 +1,29 @@
 """Scenes that cannot be what their author meant are refused; the others are taken as they are."""
 
+import math
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from cases.scene import (
+    Box,
+    Circle,
     Clamp,
     ContactPair,
+    Helix,
     Line,
+    LineLoad,
     Material,
+    Polygon,
     Rectangle,
+    Ring,
     Rod,
     RodFace,
     Scene,
     SceneError,
     SectionForce,
+    SectionMoment,
 )
 
 STEEL = Material(200000.0, 0.3)
@@ -140,6 +149,11 @@ def test_contact_pairs_that_make_no_sense_are_refused(change, key):
         ({"loads": (SectionForce("upper", 300.1, (0.0, 1.0, 0.0)),)}, "loads #1.position"),
         ({"loads": (SectionForce("upper", -0.1, (0.0, 1.0, 0.0)),)}, "loads #1.position"),
         ({"loads": (SectionForce("upper", 0.0, (0.0, float("nan"), 0.0)),)}, "loads #1.force"),
+        ({"loads": (SectionMoment("upper", 300.1, (0.0, 1.0, 0.0)),)}, "loads #1.position"),
+        ({"loads": (SectionMoment("upper", 0.0, (0.0, float("nan"), 0.0)),)}, "loads #1.moment"),
+        ({"loads": (LineLoad("upper", 200.0, 100.0, (0.0, 1.0, 0.0)),)}, "loads #1.start"),
+        ({"loads": (LineLoad("upper", 200.0, 300.1, (0.0, 1.0, 0.0)),)}, "loads #1.start"),
+        ({"loads": (LineLoad("upper", 0.0, 1.0, (0.0, float("nan"), 0.0)),)}, "loads #1.force"),
     ],
 )
 def test_names_and_positions_that_do_not_exist_are_refused(parts, key):
@@ -164,6 +178,15 @@ def test_element_borders_run_along_the_whole_rod(borders, remedy):
     assert remedy in error.remedy
 
 
+ORIGIN, RADIAL, AXIS = (0.0, 0.0, 0.0), (100.0, 0.0, 0.0), (0.0, 0.0, 1.0)
+SHARP = ((0.0, 0.0), (9.0, 0.0), (0.0, 9.0))
+
+
+def small(x, y):
+    """A square hole of 1 mm."""
+    return ((x, y), (x + 1.0, y), (x + 1.0, y + 1.0), (x, y + 1.0))
+
+
 @pytest.mark.parametrize(
     ("make", "arguments", "key"),
     [
@@ -175,11 +198,100 @@ def test_element_borders_run_along_the_whole_rod(borders, remedy):
         (Line, ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 1.0, 0.0)), "end"),
         (Line, ((0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (2.0, 0.0, 0.0)), "up"),
         (Line, ((0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (0.0, 0.0, 0.0)), "up"),
+        (Line, ((0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), float("nan")), "twist"),
+        (Circle, (0.0,), "diameter"),
+        (Ring, (10.0, 0.0), "inner_diameter"),
+        (Ring, (10.0, 10.0), "outer_diameter"),
+        (Box, (10.0, 20.0, 5.0), "wall"),
+        (Polygon, (SHARP[:2],), "outer"),
+        (Polygon, ((*SHARP, SHARP[0]),), "outer"),
+        (Polygon, (((0.0, 0.0), (1.0, 0.0), (2.0, 0.0)),), "outer"),
+        (Polygon, (((0.0, 0.0), (9.0, 9.0), (9.0, 0.0), (0.0, 9.0)),), "outer"),
+        (Polygon, (SHARP, (small(1.0, 1.0), small(8.0, 8.0))), "holes #2"),
+        (Polygon, (SHARP, (small(1.0, 1.0), small(1.2, 1.2))), "holes #2"),
+        (Polygon, (SHARP, (small(0.0, 1.0),)), "holes #1"),
+        (Helix, (RADIAL, ORIGIN, (0.0, 0.0, 0.0), 1.0, AXIS), "axis"),
+        (Helix, (ORIGIN, (0.0, 0.0, 3.0), AXIS, 1.0, AXIS), "start"),
+        (Helix, (RADIAL, ORIGIN, AXIS, 0.0, AXIS), "angle"),
+        (Helix, (RADIAL, ORIGIN, AXIS, 1.0, (0.0, 2.0, 0.0)), "up"),
+        (Helix, (RADIAL, ORIGIN, AXIS, 1.0, AXIS, float("inf")), "pitch"),
         (Line, ((0.0, float("nan"), 0.0), (1.0, 0.0, 0.0), (0.0, 1.0, 0.0)), "start"),
     ],
 )
 def test_materials_sections_and_lines_that_cannot_be_are_refused(make, arguments, key):
     assert refusal(make, *arguments).key == key
+
+
+def test_a_full_turn_of_a_helix_is_as_long_as_its_development():
+    helix = Helix(RADIAL, ORIGIN, AXIS, 2.0 * math.pi, AXIS, pitch=-30.0)
+
+    assert helix.radius == 100.0
+    assert helix.length == pytest.approx(math.hypot(2.0 * math.pi * 100.0, 30.0))
+    assert helix.start_tangent == pytest.approx(np.array([0.0, 200.0 * math.pi, -30.0]) / helix.length)
+
+
+def test_a_polygon_s_centroid_leaves_out_its_holes():
+    square = ((0.0, 0.0), (4.0, 0.0), (4.0, 4.0), (0.0, 4.0))
+    clockwise = ((2.0, 1.0), (2.0, 3.0), (3.0, 3.0), (3.0, 1.0))
+
+    # area 16 at x = 2 less area 2 at x = 2.5
+    assert Polygon(square, (clockwise,)).centroid == pytest.approx(((32.0 - 5.0) / 14.0, 2.0))
+
+
+@pytest.mark.parametrize(
+    ("section", "up", "fits"),
+    [
+        pytest.param(Rectangle(19.0, 60.0), AXIS, True, id="flat across the curve"),
+        pytest.param(Rectangle(21.0, 1.0), AXIS, False, id="wide across the curve"),
+        pytest.param(Rectangle(19.0, 60.0), RADIAL, False, id="upright in the curve"),
+        pytest.param(Circle(19.9), AXIS, True, id="thick bar"),
+        pytest.param(Ring(20.1, 1.0), AXIS, False, id="thick tube"),
+        # x looks inwards (e1 = e2 x t); the centroid lies 6 mm from the back and 12 mm from the edge
+        pytest.param(Polygon(((0.0, 0.0), (18.0, 9.0), (18.0, -9.0))), AXIS, True, id="back inwards"),
+        pytest.param(Polygon(((0.0, 0.0), (-18.0, 9.0), (-18.0, -9.0))), AXIS, False, id="edge inwards"),
+    ],
+)
+def test_sections_fit_into_their_radius_of_curvature(section, up, fits):
+    arc = Helix((10.0, 0.0, 0.0), ORIGIN, AXIS, 1.0, up)
+
+    if fits:
+        assert Rod("bow", arc, section, STEEL, (0.0, 10.0)).length == 10.0
+    else:
+        assert refusal(Rod, "bow", arc, section, STEEL, (0.0, 10.0)).key == "rods.bow.centre_line"
+
+
+def test_a_rounded_last_border_is_set_to_the_length():
+    arc = Helix(RADIAL, ORIGIN, AXIS, math.pi / 2.0, AXIS)
+
+    assert Rod("bow", arc, SQUARE, STEEL, (0.0, 50.0, 157.08)).element_borders == (0.0, 50.0, arc.length)
+    error = refusal(Rod, "bow", arc, SQUARE, STEEL, (0.0, 157.0799, 157.08))
+    assert error.key == "rods.bow.element_borders"
+
+
+@pytest.mark.parametrize(
+    ("other", "remedy"),
+    [
+        pytest.param({"section": Circle(15.0)}, "flat faces", id="round"),
+        pytest.param({"centre_line": replace(UPPER.centre_line, twist=0.1)}, "untwisted", id="twisted"),
+        pytest.param(
+            {
+                "centre_line": Helix((200.0, 15.5, 0.0), (200.0, 200.0, 0.0), AXIS, 1.0, (0.0, 1.0, 0.0)),
+                "element_borders": (0.0, 184.5),
+            },
+            "straight",
+            id="curved",
+        ),
+    ],
+)
+def test_contact_is_between_flat_faces_of_straight_rods(other, remedy):
+    error = refusal(scene, rods=(LOWER, replace(UPPER, **other)))
+
+    assert error.key == "contacts.overlap.second.rod"
+    assert remedy in error.remedy
+
+
+def test_boxes_may_touch_like_rectangles():
+    assert scene(rods=(LOWER, replace(UPPER, section=Box(15.0, 15.0, 2.0)))).contacts == (OVERLAP,)
 
 
 def test_an_unknown_name_is_a_key_error():
