@@ -14,8 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cases.scene import ContactPair, LineLoad, Rod, Scene
+from rodmodel.mesh import SAME_BORDER, RodMesh, rod_mesh, split, stretched
 from rodmodel.pairing import opposite_stations
-from rodmodel.system import SAME_BORDER
 
 Array = NDArray[np.float64]
 
@@ -38,25 +38,23 @@ class Edge:
 
 @dataclass(frozen=True, eq=False)
 class RodBorders:
-    """Borders of one rod and which of them are held or follow an edge.
+    """Elements of one rod and which of their borders are held or follow an edge.
 
     Attributes
     ----------
-    base : borders before any edge moves, mm
-    anchors : indices into base of borders that are held or follow an edge, ascending
+    base : elements before any edge moves
+    anchors : indices of borders that are held or follow an edge, ascending
     edges : for each anchor the number of its edge, or -1 where it is held
     """
 
-    base: Array
+    base: RodMesh
     anchors: tuple[int, ...]
     edges: tuple[int, ...]
 
 
-def natural_borders(scene: Scene, rod: Rod) -> Array:
-    """Borders of the scene's elements, and where they miss them loads and zone ends: fields have kinks there."""
-    borders = np.concatenate([rod.element_borders, _held_stations(scene, rod)])
-    borders = np.sort(np.clip(borders, 0.0, rod.element_borders[-1]))
-    return np.asarray(borders[np.concatenate([[True], np.diff(borders) > SAME_BORDER])])
+def natural_mesh(scene: Scene, rod: Rod, level: int | Sequence[int], order: int | Sequence[int]) -> RodMesh:
+    """The rod's elements, split where they miss loads and zone ends: fields have kinks there."""
+    return split(rod_mesh(rod, level, order), _held_stations(scene, rod))
 
 
 def _held_stations(scene: Scene, rod: Rod) -> Array:
@@ -76,7 +74,7 @@ def _on_rod(scene: Scene, pair: ContactPair, rod: Rod, station: Array) -> Array:
 
 
 def border_plan(
-    scene: Scene, borders: Mapping[str, Array], edges: Sequence[Edge], positions: Array
+    scene: Scene, meshes: Mapping[str, RodMesh], edges: Sequence[Edge], positions: Array
 ) -> dict[str, RodBorders]:
     """Decide which border follows which edge: on every rod the assignment that moves the borders least.
 
@@ -87,18 +85,18 @@ def border_plan(
         targets = _edge_stations(scene, rod, edges, positions)
         numbers = sorted(targets, key=lambda number: targets[number])
         wanted = np.array([targets[number] for number in numbers])
-        base, held = borders[rod.name], _held_stations(scene, rod)
-        movable = _movable(scene, rod, base, held, edges)
+        mesh, held = meshes[rod.name], _held_stations(scene, rod)
+        movable = _movable(scene, rod, mesh.borders, held, edges)
         if len(movable) < len(wanted):
-            base = np.unique(np.concatenate([base, wanted]))
-            movable = [int(index) for index in np.searchsorted(base, wanted)]
+            mesh = split(mesh, wanted)
+            movable = [int(np.abs(mesh.borders - station).argmin()) for station in wanted]
         chosen = min(
             combinations(movable, len(wanted)),
-            key=lambda indices: float(np.abs(base[list(indices)] - wanted).sum()),
+            key=lambda indices: float(np.abs(mesh.borders[list(indices)] - wanted).sum()),
         )
-        is_held = [int(np.abs(base - station).argmin()) for station in held]
+        is_held = [int(np.abs(mesh.borders - station).argmin()) for station in held]
         anchors = {**dict.fromkeys(is_held, -1), **dict(zip(chosen, numbers, strict=True))}
-        plan[rod.name] = RodBorders(base, tuple(sorted(anchors)), tuple(anchors[index] for index in sorted(anchors)))
+        plan[rod.name] = RodBorders(mesh, tuple(sorted(anchors)), tuple(anchors[index] for index in sorted(anchors)))
     return plan
 
 
@@ -111,33 +109,31 @@ def _edge_stations(scene: Scene, rod: Rod, edges: Sequence[Edge], positions: Arr
     }
 
 
-def _movable(scene: Scene, rod: Rod, base: Array, held: Array, edges: Sequence[Edge]) -> list[int]:
+def _movable(scene: Scene, rod: Rod, borders: Array, held: Array, edges: Sequence[Edge]) -> list[int]:
     """Borders inside the zones of the edges' pairs, other than held ones."""
     zones = [
         _on_rod(scene, scene.contact(name), rod, np.array(scene.contact(name).zone)) for name in {e.pair for e in edges}
     ]
     return [
         index
-        for index, border in enumerate(base)
+        for index, border in enumerate(borders)
         if np.abs(held - border).min() > SAME_BORDER
         and any(zone.min() < border < zone.max() for zone in zones if len(zone))
     ]
 
 
-def placed_borders(
+def placed_meshes(
     scene: Scene, plan: Mapping[str, RodBorders], edges: Sequence[Edge], positions: Array
-) -> dict[str, Array]:
-    """Borders of every rod with the edges at `positions` (mm along each pair's first rod)."""
+) -> dict[str, RodMesh]:
+    """Elements of every rod with the edges at `positions` (mm along each pair's first rod)."""
     placed = {}
     for rod in scene.rods:
         borders = plan[rod.name]
         stations = _edge_stations(scene, rod, edges, positions)
-        anchors = list(borders.anchors)
-        new = [
-            borders.base[anchor] if edge < 0 else stations[edge]
-            for anchor, edge in zip(anchors, borders.edges, strict=True)
+        places = [
+            borders.base.borders[anchor] if edge < 0 else stations[edge]
+            for anchor, edge in zip(borders.anchors, borders.edges, strict=True)
         ]
         # An edge that has crossed a held border has changed places with it.
-        moved = np.interp(borders.base, borders.base[anchors], np.sort(new))
-        placed[rod.name] = moved[np.concatenate([[True], np.diff(moved) > SAME_BORDER])]
+        placed[rod.name] = stretched(borders.base, borders.anchors, np.sort(places))
     return placed

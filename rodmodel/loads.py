@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from cases.scene import LineLoad, Load, Section, SectionForce, SectionMoment
+from cases.scene import LineLoad, Load, Rod, Section, SectionForce, SectionMoment
 from rodmodel.assembly import AssembledRod, Part, point_parts
 from rodmodel.axial import gauss, shape_functions
 from rodmodel.centre_line import frames
@@ -29,7 +29,7 @@ def load_parts(assembled: AssembledRod, loads: Sequence[Load], column: int) -> l
         if isinstance(load, LineLoad):
             parts += _line_load_parts(assembled, load, column)
         else:
-            at_section = point_parts(assembled, np.array([load.position]), _section_load(assembled, load)[:, None])
+            at_section = point_parts(assembled, np.array([load.position]), _section_load(assembled.rod, load))
             parts += [replace(part, columns=np.array([column])) for part in at_section]
     return parts
 
@@ -65,24 +65,31 @@ def linear_traction(section: Section, fields: Fields) -> Array:
     return work
 
 
-def _section_load(assembled: AssembledRod, load: SectionForce | SectionMoment) -> Array:
-    axes = frames(assembled.rod.centre_line, np.array([load.position]))[0]
+def _section_load(rod: Rod, load: SectionForce | SectionMoment) -> Callable[[Fields], Array]:
+    axes = frames(rod.centre_line, np.array([load.position]))[0]
     if isinstance(load, SectionMoment):
-        return np.asarray((axes @ load.moment) @ linear_traction(assembled.rod.section, assembled.fields))
-    return np.asarray((axes @ load.force) @ even_traction(assembled.fields))
+        moment = axes @ load.moment
+        return lambda fields: (moment @ linear_traction(rod.section, fields))[:, None]
+    force = axes @ load.force
+    return lambda fields: (force @ even_traction(fields))[:, None]
 
 
 def _line_load_parts(assembled: AssembledRod, load: LineLoad, column: int) -> list[Part]:
     """A line load covers whole elements: its ends are element borders."""
-    xi, weight = gauss(assembled.order + EXTRA_POINTS)
-    along = shape_functions(assembled.order, xi)
-    even = even_traction(assembled.fields)
     parts = []
-    for element, (left, right) in enumerate(zip(assembled.borders, assembled.borders[1:], strict=False)):
+    for index, element in enumerate(assembled.elements):
+        left, right = assembled.borders[index : index + 2]
         if not load.start < 0.5 * (left + right) < load.end:
             continue
+        xi, weight = gauss(element.order + EXTRA_POINTS)
         station = 0.5 * (left + right) + 0.5 * (right - left) * xi
         force = frames(assembled.rod.centre_line, station) @ load.force
-        values = np.einsum("aq,q,qc,cf->af", along, 0.5 * (right - left) * weight, force, even)
-        parts.append(Part(element, np.array([column]), values[:, :, None]))
+        values = np.einsum(
+            "aq,q,qc,cf->af",
+            shape_functions(element.order, xi),
+            0.5 * (right - left) * weight,
+            force,
+            even_traction(element.fields),
+        )
+        parts.append(Part(index, np.array([column]), values[:, :, None]))
     return parts

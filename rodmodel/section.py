@@ -10,7 +10,7 @@ Strain in the local frame, order (xx, yy, ss, ys, xs, xy):
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -64,6 +64,10 @@ class Fields:
         """Number of fields."""
         return int(self.table.shape[1])
 
+    def within(self, larger: Fields) -> IntArray:
+        """Where the fields stand among those of a level at least as high, shape (n_fields,)."""
+        return _embedding(self, larger)
+
     def indices(self, component: int) -> IntArray:
         """The fields of one displacement component."""
         return np.flatnonzero(self.table[0] == component)
@@ -73,6 +77,12 @@ class Fields:
         wanted = np.array([[component], [degree_x], [degree_y]])
         found = np.flatnonzero(np.equal(self.table, wanted).all(axis=0))
         return int(found[0]) if len(found) else None
+
+
+@lru_cache(maxsize=256)
+def _embedding(smaller: Fields, larger: Fields) -> IntArray:
+    places = {tuple(column): index for index, column in enumerate(larger.table.T.tolist())}
+    return np.array([places[tuple(column)] for column in smaller.table.T.tolist()], dtype=np.int64)
 
 
 def section_values(section: Rectangle, chosen: Fields, x: Array, y: Array) -> Array:

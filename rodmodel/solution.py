@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from cases.scene import End, Scene, Section
+from cases.scene import End, Rod, Scene, Section
 from rodmodel.assembly import AssembledRod, compliance
 from rodmodel.axial import shape_function_slopes, shape_functions
 from rodmodel.centre_line import centre_points, darboux, frames, global_points
@@ -29,6 +29,7 @@ from rodmodel.section import (
 from rodmodel.system import ContactSystem
 
 Array = NDArray[np.float64]
+IntArray = NDArray[np.int64]
 
 
 @dataclass(frozen=True)
@@ -72,25 +73,22 @@ class Solution:
     Attributes
     ----------
     scene : what was solved
-    level, order : k of h_k and p
     outcome : 'converged', or why not
     contact_solutions : contact solutions spent, one a set of border positions
     stretches : parts of the zones found in contact, with the borders that ended on their edges
     system : rods and contact points on the final borders
     force : at every contact point of the system, N
-    coefficients : by rod name, degrees of freedom by element, shape (n_elements, order + 1, n_fields)
+    coefficients : by rod name, degrees of freedom of every element, shape (order + 1, n_fields) each
     cost : unknowns and seconds
     """
 
     scene: Scene
-    level: int
-    order: int
     outcome: str
     contact_solutions: int
     stretches: tuple[Stretch, ...]
     system: ContactSystem
     force: Array
-    coefficients: Mapping[str, Array]
+    coefficients: Mapping[str, tuple[Array, ...]]
     cost: Cost
 
     @property
@@ -113,23 +111,25 @@ class Solution:
     def displacement_at(self, rod: str, points: Array) -> Array:
         """Displacement at points (x, y, s) of a rod, global components, mm; shape (3, n) to (3, n)."""
         assembled = self.system.rods[rod]
-        psi, _ = self._axial(assembled, points[2])
-        values = section_values(assembled.rod.section, assembled.fields, points[0], points[1])
-        local = np.array([(values * psi)[assembled.fields.indices(c)].sum(axis=0) for c in (U, V, W)])
+        local = np.empty((3, points.shape[1]))
+        for fields, members, psi, _ in self._axial(assembled, points[2]):
+            values = section_values(assembled.rod.section, fields, points[0, members], points[1, members]) * psi
+            local[:, members] = [values[fields.indices(component)].sum(axis=0) for component in (U, V, W)]
         axes = frames(assembled.rod.centre_line, np.asarray(points[2], dtype=float))
         return np.asarray(np.einsum("ncg,cn->gn", axes, local))
 
     def strain(self, rod: str, points: Array) -> Array:
         """Strain in the local frame at points (x, y, s): xx, yy, ss, ys, xs, xy (shears as gamma), shape (6, n)."""
-        assembled = self.system.rods[rod]
-        psi, slope = self._axial(assembled, points[2])
-        turning = darboux(assembled.rod.centre_line)
-        b0, b1, _ = strain_operators(assembled.rod.section, assembled.fields, points[0], points[1], turning)
-        return np.asarray(np.einsum("pcf,fp->cp", b0, psi) + np.einsum("pcf,fp->cp", b1, slope))
+        return self._strain_and_level(rod, points)[0]
 
     def stress(self, rod: str, points: Array) -> Array:
         """Stress in the local frame at points (x, y, s), MPa, ordered as the strain, shape (6, n)."""
-        return elasticity_matrix(self.scene.rod(rod).material, self.level) @ self.strain(rod, points)
+        strain, levels = self._strain_and_level(rod, points)
+        stress = np.empty_like(strain)
+        for level in np.unique(levels):
+            members = levels == level
+            stress[:, members] = elasticity_matrix(self.scene.rod(rod).material, int(level)) @ strain[:, members]
+        return stress
 
     def section_resultants(self, rod: str, station: Array) -> Array:
         """N, Q1, Q2 (N), M1, M2, T (N mm) from the stress in the sections at `station`, shape (6, n).
@@ -138,18 +138,11 @@ class Solution:
         """
         assembled = self.system.rods[rod]
         station = np.atleast_1d(np.asarray(station, dtype=float))
-        turning = darboux(assembled.rod.centre_line)
-        x, y, weight = section_quadrature(assembled.rod.section, self.level, turning)
-        b0, b1, _ = strain_operators(assembled.rod.section, assembled.fields, x, y, turning)
-        law = elasticity_matrix(assembled.rod.material, self.level)
-        # What each stress component at a point adds to each resultant; components xx, yy, xy add nothing.
-        lever = np.zeros((6, 6, len(x)))
-        lever[0, 2], lever[1, 4], lever[2, 3] = 1.0, 1.0, 1.0
-        lever[3, 2], lever[4, 2], lever[5, 3], lever[5, 4] = y, -x, x, -y
-        sums = np.einsum("rcp,cd,p->rpd", lever, law, weight).reshape(6, -1)
-        psi, slope = self._axial(assembled, station)
-        fields = assembled.fields.count
-        return np.asarray(sums @ b0.reshape(-1, fields) @ psi + sums @ b1.reshape(-1, fields) @ slope)
+        result = np.empty((6, len(station)))
+        for fields, members, psi, slope in self._axial(assembled, station):
+            sums_0, sums_1 = _resultant_operators(assembled.rod, fields)
+            result[:, members] = sums_0 @ psi + sums_1 @ slope
+        return result
 
     def reaction(self, rod: str, end: End) -> Array:
         """Force (N) and moment about the section's centre (N mm) of a clamp on the rod, global, shape (6,).
@@ -158,12 +151,12 @@ class Solution:
         """
         assembled = self.system.rods[rod]
         load = self.system.total_load(rod, self.force)
-        at_end = end == "end"
+        at_end = int(end == "end")
         element, values = assembled.elements[-at_end], self.coefficients[rod][-at_end]
-        rows = element.condensed.reshape(2, assembled.fields.count, -1)[int(at_end)]
-        residual = assembled.rod.material.young_modulus * (rows @ values[:2].ravel()) - load.ends[int(at_end), :, 0]
+        rows = element.condensed.reshape(2, element.fields.count, -1)[at_end]
+        residual = assembled.rod.material.young_modulus * (rows @ values[:2].ravel()) - load.ends[at_end][:, 0]
         axes = frames(assembled.rod.centre_line, assembled.borders[[-at_end]])[0]
-        local = _rigid_motions(assembled.rod.section, assembled.fields) @ residual
+        local = _rigid_motions(assembled.rod.section, element.fields) @ residual
         return np.concatenate([axes.T @ local[:3], axes.T @ local[3:]])
 
     def contact_points(self, pair: str) -> ContactPoints:
@@ -197,13 +190,45 @@ class Solution:
             self.force[self.system.points[pair]],
         )
 
-    def _axial(self, assembled: AssembledRod, station: Array) -> tuple[Array, Array]:
-        """Psi and psi' of every field at stations, each of shape (n_fields, n)."""
+    def _strain_and_level(self, rod: str, points: Array) -> tuple[Array, IntArray]:
+        assembled = self.system.rods[rod]
+        turning = darboux(assembled.rod.centre_line)
+        strain, levels = np.empty((6, points.shape[1])), np.empty(points.shape[1], dtype=np.int64)
+        for fields, members, psi, slope in self._axial(assembled, points[2]):
+            x, y = points[:2, members]
+            b0, b1, _ = strain_operators(assembled.rod.section, fields, x, y, turning)
+            strain[:, members] = np.einsum("pcf,fp->cp", b0, psi) + np.einsum("pcf,fp->cp", b1, slope)
+            levels[members] = fields.level
+        return strain, levels
+
+    def _axial(self, assembled: AssembledRod, station: Array) -> Iterator[tuple[Fields, IntArray, Array, Array]]:
+        """For elements of the same kind: their fields, which stations lie in them, psi and psi' there (n_fields, n)."""
         index, xi = assembled.locate(station)
-        values = self.coefficients[assembled.rod.name][index]
-        jacobian = 2.0 / np.diff(assembled.borders)[index]
-        psi = np.einsum("an,naf->fn", shape_functions(self.order, xi), values)
-        return psi, np.einsum("an,naf->fn", shape_function_slopes(self.order, xi), values) * jacobian
+        kinds: dict[tuple[Fields, int], list[int]] = {}
+        for number in np.unique(index):
+            element = assembled.elements[number]
+            kinds.setdefault((element.fields, element.order), []).append(int(number))
+        for (fields, order), numbers in kinds.items():
+            members = np.flatnonzero(np.isin(index, numbers))
+            place = np.searchsorted(numbers, index[members])
+            values = np.stack([self.coefficients[assembled.rod.name][number] for number in numbers])[place]
+            jacobian = 2.0 / np.diff(assembled.borders)[index[members]]
+            psi = np.einsum("an,naf->fn", shape_functions(order, xi[members]), values)
+            slope = np.einsum("an,naf->fn", shape_function_slopes(order, xi[members]), values) * jacobian
+            yield fields, members, psi, slope
+
+
+def _resultant_operators(rod: Rod, fields: Fields) -> tuple[Array, Array]:
+    """What psi and psi' of every field add to N, Q1, Q2, M1, M2, T, each of shape (6, n_fields)."""
+    turning = darboux(rod.centre_line)
+    x, y, weight = section_quadrature(rod.section, fields.level, turning)
+    b0, b1, _ = strain_operators(rod.section, fields, x, y, turning)
+    # What each stress component at a point adds to each resultant; components xx, yy, xy add nothing.
+    lever = np.zeros((6, 6, len(x)))
+    lever[0, 2], lever[1, 4], lever[2, 3] = 1.0, 1.0, 1.0
+    lever[3, 2], lever[4, 2], lever[5, 3], lever[5, 4] = y, -x, x, -y
+    sums = np.einsum("rcp,cd,p->rpd", lever, elasticity_matrix(rod.material, fields.level), weight).reshape(6, -1)
+    return sums @ b0.reshape(-1, fields.count), sums @ b1.reshape(-1, fields.count)
 
 
 def _rigid_motions(section: Section, fields: Fields) -> Array:

@@ -3,42 +3,47 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from cases.scene import Scene, SceneError
+from cases.scene import Rod, Scene, SceneError
 from rodmodel.assembly import ElementStore, coefficients
-from rodmodel.borders import Edge, border_plan, natural_borders, placed_borders
+from rodmodel.borders import Edge, border_plan, natural_mesh, placed_meshes
 from rodmodel.contact import unilateral_contact
 from rodmodel.edges import EdgeSearch, Stretch, find_edges, moved, moving_edges, same_topology, stretches_in_contact
+from rodmodel.mesh import RodMesh
 from rodmodel.solution import Cost, Solution
-from rodmodel.symmetry import symmetric_fields
+from rodmodel.symmetry import scene_mirrors
 from rodmodel.system import ContactSystem, contact_system
 
 Array = NDArray[np.float64]
 
-# Makes the contact system on given borders, with points in all zones or in parts of them.
-SystemOn = Callable[[dict[str, Array], dict[str, Array] | None], ContactSystem]
+# A level or an order: the same everywhere, or by rod name one for each element.
+Grades = int | Mapping[str, Sequence[int]]
+# Makes the contact system on given meshes, with points in all zones or in parts of them.
+SystemOn = Callable[[dict[str, RodMesh], dict[str, Array] | None], ContactSystem]
 
 # How often the search may start anew because stretches appeared, merged or vanished.
 MOST_TOPOLOGIES = 3
 
 
-def solve(scene: Scene, level: int = 5, order: int = 6) -> Solution:
+def solve(scene: Scene, level: Grades = 5, order: Grades = 6) -> Solution:
     """Solve a scene with the hierarchic rod model.
 
     Parameters
     ----------
-    level : k of h_k, degree of the displacement in (x, y)
-    order : p, degree along the rods, at least 2
+    level : k of h_k, degree of the displacement in (x, y); by rod name, one for each element, where they differ
+    order : p, degree along the rods, at least 2; likewise
 
     Raises
     ------
     SceneError
-        if a rod is not held by any support.
+        if a rod is not held by any support, or is bent more sharply than its section is wide.
+    ValueError
+        if there is not one level or order for each element.
     """
     for index, rod in enumerate(scene.rods):
         if not any(support.rod == rod.name for support in scene.supports):
@@ -46,13 +51,13 @@ def solve(scene: Scene, level: int = 5, order: int = 6) -> Solution:
                 "supports", f"none on rods[{index}] '{rod.name}'", "a rod must be clamped at one end at least"
             )
     begin = time.perf_counter()
-    fields = symmetric_fields(scene, level)
-    store = ElementStore(order)
+    mirrors = scene_mirrors(scene)
+    store = ElementStore()
 
-    def system_on(borders: dict[str, Array], within: dict[str, Array] | None = None) -> ContactSystem:
-        return contact_system(scene, fields, borders, store, within)
+    def system_on(meshes: dict[str, RodMesh], within: dict[str, Array] | None = None) -> ContactSystem:
+        return contact_system(scene, mirrors, meshes, store, within)
 
-    natural = {rod.name: natural_borders(scene, rod) for rod in scene.rods}
+    natural = {rod.name: natural_mesh(scene, rod, _grades_of(level, rod), _grades_of(order, rod)) for rod in scene.rods}
     system = system_on(natural)
     ready = time.perf_counter()
     contact = moved_contact(scene, natural, system, system_on)
@@ -64,8 +69,6 @@ def solve(scene: Scene, level: int = 5, order: int = 6) -> Solution:
     cost = Cost(unknowns, ready - begin, time.perf_counter() - ready)
     return Solution(
         scene,
-        level,
-        order,
         contact.outcome,
         contact.solutions,
         contact.stretches,
@@ -74,6 +77,10 @@ def solve(scene: Scene, level: int = 5, order: int = 6) -> Solution:
         values,
         cost,
     )
+
+
+def _grades_of(grades: Grades, rod: Rod) -> int | Sequence[int]:
+    return grades if isinstance(grades, int) else grades[rod.name]
 
 
 @dataclass(frozen=True, eq=False)
@@ -95,7 +102,7 @@ class MovedContact:
 
 def moved_contact(
     scene: Scene,
-    natural: dict[str, Array],
+    natural: dict[str, RodMesh],
     system: ContactSystem,
     system_on: SystemOn,
 ) -> MovedContact:
@@ -109,8 +116,8 @@ def moved_contact(
         edges, positions = moving_edges(scene, stretches)
         if not edges:
             return MovedContact("converged", solutions, stretches, system, force)
-        search, borders = _search(scene, natural, stretches, edges, positions, system_on)
-        system = system_on(borders, None)
+        search, meshes = _search(scene, natural, stretches, edges, positions, system_on)
+        system = system_on(meshes, None)
         force = unilateral_contact(system.compliance, system.initial_gap, system.spring)
         solutions += len(search.steps) + 1
         found = stretches_in_contact(system, force)
@@ -124,13 +131,13 @@ def moved_contact(
 
 def _search(
     scene: Scene,
-    natural: dict[str, Array],
+    natural: dict[str, RodMesh],
     stretches: Sequence[Stretch],
     edges: Sequence[Edge],
     positions: Array,
     system_on: SystemOn,
-) -> tuple[EdgeSearch, dict[str, Array]]:
-    """One search with the borders that follow each edge chosen beforehand, and the borders it ended with."""
+) -> tuple[EdgeSearch, dict[str, RodMesh]]:
+    """One search with the borders that follow each edge chosen beforehand, and the meshes it ended with."""
     plan = border_plan(scene, natural, edges, positions)
 
     def system_at(at: Array) -> ContactSystem:
@@ -140,7 +147,7 @@ def _search(
             pair.name: np.array([[s.start, s.end] for s in held if s.pair == pair.name]).reshape(-1, 2)
             for pair in scene.contacts
         }
-        return system_on(placed_borders(scene, plan, edges, at), within)
+        return system_on(placed_meshes(scene, plan, edges, at), within)
 
     search = find_edges(scene, stretches, edges, positions, system_at)
-    return search, placed_borders(scene, plan, edges, search.positions)
+    return search, placed_meshes(scene, plan, edges, search.positions)

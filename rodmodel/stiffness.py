@@ -64,12 +64,15 @@ class Element:
 
     Attributes
     ----------
+    fields, order : of its displacement over the section and along the rod
     length : mm
     condensed : K_nn - K_nb K_bb^-1 K_bn, shape (n_nodal, n_nodal)
     bubbles : L of K_bb = L L^T
     half_coupling : L^-1 K_bn, shape (n_bubbles, n_nodal)
     """
 
+    fields: Fields
+    order: int
     length: float
     condensed: Array
     bubbles: BubbleFactor
@@ -82,12 +85,15 @@ class ElementFamily:
 
     Attributes
     ----------
+    fields, order : of the displacement over the section and along the rod
     groups : bubbles that couple with one another alone
     nodal : terms of K_nn, shape (3, n_nodal, n_nodal)
     coupling : terms of K_bn by group, shape (3, n_group, n_nodal) each
     bubbles : terms of K_bb by group, shape (3, n_group, n_group) each
     """
 
+    fields: Fields
+    order: int
     groups: tuple[IntArray, ...]
     nodal: Array
     coupling: tuple[Array, ...]
@@ -106,6 +112,8 @@ def element_family(order: int, fields: Fields, section: SectionStiffness, revers
     groups = tuple(group for group in (np.flatnonzero(parity == 0), np.flatnonzero(parity == 1)) if len(group))
     rows = [n_nodal + group for group in groups]
     return ElementFamily(
+        fields,
+        order,
         groups,
         np.ascontiguousarray(terms[:, :n_nodal, :n_nodal]),
         tuple(np.ascontiguousarray(terms[:, row, :n_nodal]) for row in rows),
@@ -124,4 +132,4 @@ def condensed_element(family: ElementFamily, length: float) -> Element:
     half = np.concatenate(
         [lower_solve(block, at_length(terms)) for block, terms in zip(factor.blocks, family.coupling, strict=True)]
     )
-    return Element(length, at_length(family.nodal) - half.T @ half, factor, half)
+    return Element(family.fields, family.order, length, at_length(family.nodal) - half.T @ half, factor, half)

@@ -10,9 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cases.scene import Load, Rod, Scene, SectionMoment
+from rodmodel.assembly import Mirrors
 from rodmodel.centre_line import frame, screw_motion
 from rodmodel.pairing import face_axes
-from rodmodel.section import Fields
 
 Array = NDArray[np.float64]
 
@@ -20,14 +20,14 @@ Array = NDArray[np.float64]
 TOLERANCE = 1e-9
 
 
-def symmetric_fields(scene: Scene, level: int) -> dict[str, Fields]:
-    """The fields each rod has to carry at level h_level, by rod name."""
+def scene_mirrors(scene: Scene) -> dict[str, Mirrors]:
+    """By rod name, whether the solution is its own mirror image in x = 0 and in y = 0 of the rod's sections."""
     first = frame(scene.rods[0].centre_line)
     planes = [normal for normal in first[:2] if _is_mirror_plane(scene, normal)]
-    return {rod.name: Fields(level, *_mirrors(rod, planes)) for rod in scene.rods}
+    return {rod.name: _mirrors(rod, planes) for rod in scene.rods}
 
 
-def _mirrors(rod: Rod, planes: list[Array]) -> tuple[bool, bool]:
+def _mirrors(rod: Rod, planes: list[Array]) -> Mirrors:
     axes = frame(rod.centre_line)
     mirror_x, mirror_y = (any(abs(axis @ normal) > 1.0 - TOLERANCE for normal in planes) for axis in axes[:2])
     return mirror_x, mirror_y

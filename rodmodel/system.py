@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from cases.scene import ContactPair, Face, Scene
+from cases.scene import ContactPair, Face, Rod, Scene
 from rodmodel.assembly import (
     AssembledRod,
     ElementStore,
     Functionals,
+    Mirrors,
     Part,
     assembled_rod,
     combined,
@@ -21,6 +22,7 @@ from rodmodel.assembly import (
     point_parts,
 )
 from rodmodel.loads import load_parts
+from rodmodel.mesh import SAME_BORDER, RodMesh
 from rodmodel.pairing import (
     ContactGrid,
     contact_grid,
@@ -33,9 +35,6 @@ from rodmodel.section import Fields, section_values
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
-
-# Borders of two meshes closer than this (mm) are the same border written with different digits.
-SAME_BORDER = 1e-6
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,19 +71,19 @@ class ContactSystem:
 
 def contact_system(
     scene: Scene,
-    fields: Mapping[str, Fields],
-    borders: Mapping[str, Array],
+    mirrors: Mapping[str, Mirrors],
+    meshes: Mapping[str, RodMesh],
     store: ElementStore,
     within: Mapping[str, Array] | None = None,
 ) -> ContactSystem:
-    """Assemble the rods on `borders` (mm, by rod name) and reduce them to their contact points.
+    """Assemble the rods on their meshes (by rod name) and reduce them to their contact points.
 
     within : by pair name, the parts of its zone that get contact points (start and end, mm along the first rod, shape
         (n, 2)); the whole of every zone if not given
     """
-    rods = {rod.name: assembled_rod(scene, rod, fields[rod.name], borders[rod.name], store) for rod in scene.rods}
+    rods = {rod.name: assembled_rod(scene, rod, mirrors[rod.name], meshes[rod.name], store) for rod in scene.rods}
     whole = {pair.name: np.array([pair.zone]) for pair in scene.contacts}
-    grids = {pair.name: _grid(scene, pair, rods, (within or whole)[pair.name]) for pair in scene.contacts}
+    grids = {pair.name: _grid(scene, pair, rods, mirrors, (within or whole)[pair.name]) for pair in scene.contacts}
     counts = [grid.weight.size for grid in grids.values()]
     ends = np.cumsum([0, *counts])
     points = {name: slice(ends[i], ends[i + 1]) for i, name in enumerate(grids)}
@@ -104,7 +103,13 @@ def contact_system(
     return ContactSystem(scene, rods, grids, points, found, places, matrix, gap, spring)
 
 
-def _grid(scene: Scene, pair: ContactPair, rods: Mapping[str, AssembledRod], within: Array) -> ContactGrid:
+def _grid(
+    scene: Scene,
+    pair: ContactPair,
+    rods: Mapping[str, AssembledRod],
+    mirrors: Mapping[str, Mirrors],
+    within: Array,
+) -> ContactGrid:
     """Contact points between the borders of both rods: enough of them to integrate the penalty energy exactly."""
     first, second = rods[pair.first.rod], rods[pair.second.rod]
     start, end = pair.zone
@@ -115,37 +120,45 @@ def _grid(scene: Scene, pair: ContactPair, rods: Mapping[str, AssembledRod], wit
     intervals = np.column_stack([borders[:-1], borders[1:]])
     middle = intervals.mean(axis=1)[:, None]
     intervals = intervals[((within[:, 0] < middle) & (middle < within[:, 1])).any(axis=1)]
-    n_across = max(first.fields.level, second.fields.level) + 2
+    n_across = max(first.level, second.level) + 2
     across_is_x = face_axes(first.rod, pair.first.face).axis == 1
-    symmetric = first.fields.mirror_x if across_is_x else first.fields.mirror_y
+    symmetric = mirrors[pair.first.rod][0 if across_is_x else 1]
     n_along = max(first.order, second.order) + 2
     return contact_grid(intervals, width_across(scene, pair), n_along, n_across + 1 - n_across % 2, symmetric)
 
 
 def _gap_parts(
-    scene: Scene, assembled: AssembledRod, grids: Mapping[str, ContactGrid], points: Mapping[str, slice]
+    scene: Scene, assembled: AssembledRod, grids: Mapping[str, ContactGrid], points_of: Mapping[str, slice]
 ) -> tuple[list[Part], IntArray]:
     """-u_n at all contact points on one rod, n being the outward normal of the face that they lie on."""
-    rod, fields = assembled.rod, assembled.fields
-    stations, directions, places = [np.empty(0)], [np.empty((fields.count, 0))], [np.empty(0, dtype=np.int64)]
+    name = assembled.rod.name
+    parts: list[Part] = []
+    places = [np.empty(0, dtype=np.int64)]
+    count = 0
     for pair in scene.contacts:
         for side in (pair.first, pair.second):
-            if side.rod != rod.name:
+            if side.rod != name:
                 continue
             grid = grids[pair.name]
             facing = facing_points(scene, pair, *grid.flat())
-            x, y, station = facing.first if side is pair.first else facing.second
-            # Parallel rods: every station has the same points across.
-            across = inward_direction(assembled, side.face, x[: len(grid.across)], y[: len(grid.across)])
-            stations.append(station)
-            directions.append(np.tile(across, grid.station.size))
-            places.append(np.arange(points[pair.name].start, points[pair.name].stop))
-    parts = point_parts(assembled, np.concatenate(stations), np.concatenate(directions, axis=1))
+            points = facing.first if side is pair.first else facing.second
+            found = point_parts(assembled, points[2], _inward(assembled.rod, side.face, grid, points))
+            parts += [replace(part, columns=part.columns + count) for part in found]
+            place = np.arange(points_of[pair.name].start, points_of[pair.name].stop)
+            places.append(place)
+            count += len(place)
     return parts, np.concatenate(places)
 
 
-def inward_direction(assembled: AssembledRod, face: Face, x: Array, y: Array) -> Array:
-    """Value of every field in the direction -n of a face at section points, shape (n_fields, n_points)."""
-    axes = face_axes(assembled.rod, face)
-    values = section_values(assembled.rod.section, assembled.fields, x, y)
-    return np.where((assembled.fields.table[0] == axes.axis)[:, None], -axes.sign * values, 0.0)
+def _inward(rod: Rod, face: Face, grid: ContactGrid, points: Array) -> Callable[[Fields], Array]:
+    """Value of every field in the direction -n of a face at its contact points, shape (n_fields, n_points)."""
+    axes = face_axes(rod, face)
+    # Parallel rods: every station has the same points across.
+    x, y = points[:2, : len(grid.across)]
+
+    def direction(fields: Fields) -> Array:
+        values = section_values(rod.section, fields, x, y)
+        across = np.where((fields.table[0] == axes.axis)[:, None], -axes.sign * values, 0.0)
+        return np.tile(across, grid.station.size)
+
+    return direction

@@ -7,7 +7,7 @@ import pytest
 
 from cases.loader import load_case
 from cases.scene import Scene, SectionForce
-from rodmodel.borders import Edge, border_plan, natural_borders, placed_borders
+from rodmodel.borders import Edge, border_plan, natural_mesh, placed_meshes
 
 
 @pytest.fixture
@@ -16,9 +16,10 @@ def scene() -> Scene:
 
 
 def placed(scene: Scene, edges: list[Edge], positions: list[float]) -> dict[str, np.ndarray]:
-    borders = {rod.name: natural_borders(scene, rod) for rod in scene.rods}
+    borders = {rod.name: natural_mesh(scene, rod, 3, 4) for rod in scene.rods}
     at = np.array(positions)
-    return placed_borders(scene, border_plan(scene, borders, edges, at), edges, at)
+    meshes = placed_meshes(scene, border_plan(scene, borders, edges, at), edges, at)
+    return {name: mesh.borders for name, mesh in meshes.items()}
 
 
 BOTH = [Edge("overlap", 0, -1), Edge("overlap", 0, 1)]
@@ -52,7 +53,7 @@ def test_a_rod_with_too_few_borders_gets_new_ones(scene: Scene) -> None:
 def test_loads_and_zone_ends_are_borders_and_do_not_move(scene: Scene) -> None:
     load = SectionForce("lower", 240.0, (0.0, -1.0, 0.0))
     loaded = replace(scene, loads=(*scene.loads, load))
-    assert 240.0 in natural_borders(loaded, loaded.rods[0])
+    assert 240.0 in natural_mesh(loaded, loaded.rods[0], 3, 4).borders
     borders = placed(loaded, BOTH, [239.0, 262.0])["lower"]
     assert 240.0 in borders
     assert 239.0 in borders

@@ -17,8 +17,8 @@ STEEL = rm.Material(200e3, 0.3)
 
 def end_mean(solution: rm.Solution, rod: str) -> np.ndarray:
     """Mean displacement of the end section, global: the coefficients of the constant functions."""
-    assembled, last = solution.system.rods[rod], solution.coefficients[rod][-1, 1]
-    indices = [assembled.fields.index(component, 0, 0) for component in range(3)]
+    assembled, last = solution.system.rods[rod], solution.coefficients[rod][-1][1]
+    indices = [assembled.elements[-1].fields.index(component, 0, 0) for component in range(3)]
     local = np.array([0.0 if index is None else last[index] for index in indices])
     return solution.frame(rod, assembled.borders[-1:])[1][0].T @ local
 

@@ -10,7 +10,7 @@ import rodmodel as rm
 from cases.loader import load_case
 from cases.scene import Material, Scene, SectionForce
 from rodmodel.assembly import ElementStore
-from rodmodel.borders import border_plan, natural_borders, placed_borders
+from rodmodel.borders import border_plan, natural_mesh, placed_meshes
 from rodmodel.contact import forces_on, unilateral_contact
 from rodmodel.edges import (
     EdgeSearch,
@@ -22,7 +22,7 @@ from rodmodel.edges import (
     same_topology,
     stretches_in_contact,
 )
-from rodmodel.symmetry import symmetric_fields
+from rodmodel.symmetry import scene_mirrors
 from rodmodel.system import ContactSystem, contact_system
 
 LEVEL, ORDER = 3, 5
@@ -34,14 +34,14 @@ def search() -> Callable[[str, float, float], tuple[Scene, EdgeSearch, Callable[
 
     def run(name, start, end):
         scene = load_case(f"two-cantilevers-{name}").scene
-        fields, store = symmetric_fields(scene, LEVEL), ElementStore(ORDER)
-        borders = {rod.name: natural_borders(scene, rod) for rod in scene.rods}
+        mirrors, store = scene_mirrors(scene), ElementStore()
+        borders = {rod.name: natural_mesh(scene, rod, LEVEL, ORDER) for rod in scene.rods}
         stretches = (Stretch("overlap", start, end),)
         edges, positions = moving_edges(scene, stretches)
         plan = border_plan(scene, borders, edges, positions)
 
         def system_at(at: np.ndarray) -> ContactSystem:
-            return contact_system(scene, fields, placed_borders(scene, plan, edges, at), store)
+            return contact_system(scene, mirrors, placed_meshes(scene, plan, edges, at), store)
 
         return scene, find_edges(scene, stretches, edges, positions, system_at), system_at
 
@@ -111,8 +111,8 @@ def test_stretches_take_their_moved_ends() -> None:
 
 def test_ripples_inside_an_element_are_not_stretches() -> None:
     scene = load_case("two-cantilevers-e50-g0").scene
-    borders = {rod.name: natural_borders(scene, rod) for rod in scene.rods}
-    system = contact_system(scene, symmetric_fields(scene, 3), borders, ElementStore(4))
+    meshes = {rod.name: natural_mesh(scene, rod, 3, 4) for rod in scene.rods}
+    system = contact_system(scene, scene_mirrors(scene), meshes, ElementStore())
     force = unilateral_contact(system.compliance, system.initial_gap, system.spring)
     closed = (force.reshape(system.grids["overlap"].weight.shape)[:, :, 0] > 0.0).ravel()
     closed_runs = np.count_nonzero(np.diff(np.concatenate([[0], closed.astype(int)])) == 1)

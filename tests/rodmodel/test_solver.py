@@ -151,3 +151,14 @@ def test_slender_bars_meet_as_beam_theory_says() -> None:
     down = 2.0 * arm**2 * (3.0 * 300.0 - arm) / (6.0 * 50e3 * second) - 1.0
     expected = down / (200.0**3 / (3.0 * 200e3 * second) + 300.0**3 / (3.0 * 50e3 * second))
     assert contact_force(solution) == pytest.approx(expected, rel=5e-3)
+
+
+def test_high_levels_are_needed_near_clamps_and_contact_alone() -> None:
+    """h6 at clamps and in the overlap, h3 between, whose cubic warping shear needs: the force of h6 to 0.01 %."""
+    scene = graded(PAPER["e50-g0"].scene)
+    everywhere = rm.solve(scene, level=6, order=5)
+    lower, upper = ([6] * 3 + [3, 3] + [6] * 5, [6] * 6 + [3] + [6] * 3)
+    somewhere = rm.solve(scene, level={"lower": lower, "upper": upper}, order=5)
+    assert somewhere.outcome == "converged"
+    assert contact_force(somewhere) == pytest.approx(contact_force(everywhere), rel=1e-4)
+    assert somewhere.cost.unknowns < 0.9 * everywhere.cost.unknowns

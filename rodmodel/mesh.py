@@ -1,0 +1,71 @@
+"""Elements along a rod: where they end, and the level and order of each."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cases.scene import Rod
+
+Array = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+
+# Borders closer than this (mm) are the same border written with different digits.
+SAME_BORDER = 1e-6
+
+
+@dataclass(frozen=True, eq=False)
+class RodMesh:
+    """Elements of a rod.
+
+    Attributes
+    ----------
+    borders : arc length, ascending, mm, shape (n_elements + 1,)
+    levels, orders : k of h_k and p of each element, shape (n_elements,)
+    """
+
+    borders: Array
+    levels: IntArray
+    orders: IntArray
+
+
+def rod_mesh(rod: Rod, level: int | Sequence[int], order: int | Sequence[int]) -> RodMesh:
+    """Elements between the rod's own borders.
+
+    level, order : of all elements, or one for each
+
+    Raises
+    ------
+    ValueError
+        if there is not one for each.
+    """
+    count = len(rod.element_borders) - 1
+    numbers = []
+    for name, given in (("level", level), ("order", order)):
+        each = [given] * count if isinstance(given, int) else list(given)
+        if len(each) != count:
+            raise ValueError(f"{name}: found {len(each)} for rod '{rod.name}', which has {count} elements")
+        numbers.append(np.array(each, dtype=np.int64))
+    return RodMesh(np.array(rod.element_borders), *numbers)
+
+
+def split(mesh: RodMesh, stations: Array) -> RodMesh:
+    """The mesh with more borders; parts of an element keep its level and order."""
+    borders = np.sort(np.concatenate([mesh.borders, np.clip(stations, mesh.borders[0], mesh.borders[-1])]))
+    borders = borders[np.concatenate([[True], np.diff(borders) > SAME_BORDER])]
+    parent = np.searchsorted(mesh.borders, 0.5 * (borders[:-1] + borders[1:])) - 1
+    return RodMesh(borders, mesh.levels[parent], mesh.orders[parent])
+
+
+def stretched(mesh: RodMesh, anchors: Sequence[int], places: Array) -> RodMesh:
+    """The mesh with some borders moved and those between them in proportion; an element of no length is left out.
+
+    anchors : indices of the moved borders, ascending
+    places : where they go, ascending, mm
+    """
+    moved = np.interp(mesh.borders, mesh.borders[list(anchors)], places)
+    kept = np.diff(moved) > SAME_BORDER
+    return RodMesh(moved[np.concatenate([[True], kept])], mesh.levels[kept], mesh.orders[kept])
