@@ -3,20 +3,18 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
+from cases.scene import LineLoad, Rod, Scene
 from reference3d.elasticity import LayeredStiffness, layered_stiffness
 from reference3d.factor import LayeredFactor, factorise
 from reference3d.frames import pair_overlap, rod_frame
 from reference3d.grading import Borders, rod_borders
 from reference3d.mesh import box_mesh
 from reference3d.quadratic import line_nodes, nodal_weights
-
-if TYPE_CHECKING:
-    from cases.scene import Rod, Scene
+from reference3d.scope import forces, rectangle
 
 Array = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
@@ -65,12 +63,19 @@ def discretise(scene: Scene, rod: Rod, refinement: int, symmetric: bool) -> Body
     in_plane[:, 0, 0] = not symmetric
     free = np.flatnonzero(in_plane)
     load = np.zeros(fixed.shape)
-    area = rod.section.width * rod.section.height
+    section = rectangle(rod)
     weights = np.outer(*(nodal_weights(axis, float(axis[0]), float(axis[-1])) for axis in (borders.y, borders.x)))
-    for section_force in scene.loads:
-        if section_force.rod == rod.name:
-            plane = int(np.argmin(np.abs(s - section_force.position)))
-            load[plane] += weights[:, :, None] / area * (rod_frame(rod).axes @ np.array(section_force.force))
+    weights /= section.width * section.height
+    for applied in forces(scene):
+        if applied.rod != rod.name:
+            continue
+        if isinstance(applied, LineLoad):
+            along = nodal_weights(borders.s, applied.start, applied.end)
+        else:
+            along = np.zeros(len(s))
+            along[int(np.argmin(np.abs(s - applied.position)))] = 1.0
+        spread = np.multiply.outer(along, weights)
+        load += np.multiply.outer(spread, rod_frame(rod).axes @ np.array(applied.force))
     reverse = _contact_near_start(scene, rod)
     return Body(
         rod=rod,
@@ -87,7 +92,7 @@ def _contact_near_start(scene: Scene, rod: Rod) -> bool:
     centres = []
     for pair in scene.contacts:
         overlap = pair_overlap(scene, pair)
-        for side, rectangle in ((pair.first, overlap.first), (pair.second, overlap.second)):
+        for side, opposite in ((pair.first, overlap.first), (pair.second, overlap.second)):
             if side.rod == rod.name:
-                centres.append(0.5 * (rectangle[0][0] + rectangle[0][1]))
+                centres.append(0.5 * (opposite[0][0] + opposite[0][1]))
     return bool(centres) and float(np.mean(centres)) < 0.5 * rod.length

@@ -10,19 +10,16 @@ linear complementarity problem
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import cho_factor, cho_solve
 from scipy.sparse import csc_array
 
+from cases.scene import ContactPair, Scene
 from reference3d.frames import face_frame, pair_overlap
+from reference3d.grading import Borders
 from reference3d.quadratic import line_nodes, locate, nodal_weights, shape_functions
-
-if TYPE_CHECKING:
-    from cases.scene import ContactPair, Scene
-    from reference3d.grading import Borders
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]

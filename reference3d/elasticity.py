@@ -7,15 +7,13 @@ the same shape share one matrix, and layers of the same thickness share one laye
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 from skfem import Basis, ElementHex2, MeshHex
 
-if TYPE_CHECKING:
-    from cases.scene import Material
-    from reference3d.grading import Borders
+from cases.scene import Material
+from reference3d.grading import Borders
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]

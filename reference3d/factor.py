@@ -8,7 +8,6 @@ elimination of their middle.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,8 +15,7 @@ from scipy.linalg.blas import dtrsm
 from scipy.linalg.lapack import dpotrf
 from scipy.sparse import csc_array
 
-if TYPE_CHECKING:
-    from reference3d.elasticity import LayeredStiffness
+from reference3d.elasticity import LayeredStiffness
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]

@@ -4,17 +4,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from itertools import product
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
+from cases.scene import Material
 from reference3d.elasticity import lame_parameters
 from reference3d.grading import Borders
 from reference3d.quadratic import Side, locate, shape_derivatives, shape_functions
-
-if TYPE_CHECKING:
-    from cases.scene import Material
 
 Array = NDArray[np.float64]
 

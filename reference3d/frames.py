@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cases.scene import ContactPair, Face, Rod, Scene, SceneError
+from reference3d.scope import forces, rectangle, straight_line
 
 Array = NDArray[np.float64]
 
@@ -74,10 +75,11 @@ class Overlap:
 
 def rod_frame(rod: Rod) -> Frame:
     """Frame (e1, e2, t) of a rod as `cases.scene` defines it."""
-    start = np.array(rod.centre_line.start, dtype=np.float64)
-    tangent = np.array(rod.centre_line.end, dtype=np.float64) - start
+    line = straight_line(rod)
+    start = np.array(line.start, dtype=np.float64)
+    tangent = np.array(line.end, dtype=np.float64) - start
     tangent /= np.linalg.norm(tangent)
-    up = np.array(rod.centre_line.up, dtype=np.float64)
+    up = np.array(line.up, dtype=np.float64)
     e2 = up - (up @ tangent) * tangent
     e2 /= np.linalg.norm(e2)
     return Frame(origin=start, axes=np.stack([np.cross(e2, tangent), e2, tangent]))
@@ -88,7 +90,7 @@ def face_frame(rod: Rod, face: Face) -> FaceFrame:
     axes = rod_frame(rod).axes
     normal_axis = 1 if face in ("top", "bottom") else 0
     side = 1 if face in ("top", "right") else -1
-    extents = (rod.section.width, rod.section.height)
+    extents = (rectangle(rod).width, rectangle(rod).height)
     return FaceFrame(
         normal_axis=normal_axis,
         lateral_axis=1 - normal_axis,
@@ -141,7 +143,7 @@ def pair_overlap(scene: Scene, pair: ContactPair) -> Overlap:
 
 def is_symmetric(scene: Scene) -> bool:
     """Whether geometry, loads and supports are mirrored in the plane x = 0 of every rod."""
-    for load in scene.loads:
+    for load in forces(scene):
         force = np.array(load.force)
         across = rod_frame(scene.rod(load.rod)).axes[0] @ force
         if abs(across) > 1e-12 * np.linalg.norm(force):
@@ -150,6 +152,6 @@ def is_symmetric(scene: Scene) -> bool:
         if not {pair.first.face, pair.second.face} <= {"top", "bottom"}:
             return False
         overlap = pair_overlap(scene, pair)
-        if abs(overlap.shift[1]) > 1e-9 * scene.rod(pair.first.rod).section.width:
+        if abs(overlap.shift[1]) > 1e-9 * rectangle(scene.rod(pair.first.rod)).width:
             return False
     return True

@@ -9,15 +9,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
+from cases.scene import LineLoad, Rod, Scene
 from reference3d.frames import pair_overlap
-
-if TYPE_CHECKING:
-    from cases.scene import Rod, Scene
+from reference3d.scope import forces, rectangle
 
 Array = NDArray[np.float64]
 
@@ -61,7 +59,8 @@ def rod_borders(scene: Scene, rod: Rod, refinement: int, symmetric: bool) -> Bor
     refinement : k, elements along each axis of a coarse cell
     symmetric : True for the half x >= 0 alone
     """
-    side = min(rod.section.width, rod.section.height)
+    section = rectangle(rod)
+    side = min(section.width, section.height)
     breaks: dict[float, float] = {0.0: LARGEST_CELL * side, rod.length: LARGEST_CELL * side}
     across: dict[str, list[float]] = {"x": [], "y": []}
     zones: list[_Zone] = []
@@ -73,26 +72,31 @@ def rod_borders(scene: Scene, rod: Rod, refinement: int, symmetric: bool) -> Bor
     for support in scene.supports:
         if support.rod == rod.name:
             add(0.0 if support.end == "start" else rod.length, CLAMP_CELL * side)
-    for load in scene.loads:
-        if load.rod == rod.name:
+    for load in forces(scene):
+        if load.rod != rod.name:
+            continue
+        if isinstance(load, LineLoad):
+            add(load.start, LARGEST_CELL * side)
+            add(load.end, LARGEST_CELL * side)
+        else:
             add(load.position, LOAD_CELL * side)
     for pair in scene.contacts:
-        for face, rectangle in zip(
+        for face, opposite in zip(
             (pair.first, pair.second),
             (pair_overlap(scene, pair).first, pair_overlap(scene, pair).second),
             strict=True,
         ):
             if face.rod != rod.name:
                 continue
-            sections = [scene.rod(name).section for name in (pair.first.rod, pair.second.rod)]
-            smaller = min(min(section.width, section.height) for section in sections)
-            for place in rectangle[0]:
+            sections = [rectangle(scene.rod(name)) for name in (pair.first.rod, pair.second.rod)]
+            smaller = min(min(each.width, each.height) for each in sections)
+            for place in opposite[0]:
                 add(place, ZONE_END_CELL * smaller)
-            zones.append(_Zone(*rectangle[0], ZONE_CELL * smaller))
-            across["x" if face.face in ("top", "bottom") else "y"] += rectangle[1]
+            zones.append(_Zone(*opposite[0], ZONE_CELL * smaller))
+            across["x" if face.face in ("top", "bottom") else "y"] += opposite[1]
     return Borders(
-        x=_across(rod.section.width, across["x"], side, refinement, symmetric),
-        y=_across(rod.section.height, across["y"], side, refinement, False),
+        x=_across(section.width, across["x"], side, refinement, symmetric),
+        y=_across(section.height, across["y"], side, refinement, False),
         s=_along(breaks, zones, LARGEST_CELL * side, refinement),
     )
 

@@ -2,16 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Callable
 
+from cases.scene import Scene
+from reference3d.solution import Solution
 from reference3d.solver import solve
 from reference3d.uncertainty import clamp_singularity_exponent
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from cases.scene import Scene
-    from reference3d.solution import Solution
 
 # elements per coarse cell along each axis: element sizes fall by 2 and by 1.5
 REFINEMENTS = (1, 2, 3)

@@ -7,17 +7,14 @@ the scene's symmetry plane halved the computation. `solver` makes it.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
+from cases.scene import ContactPair, End, Rod, Scene
 from reference3d.field import Field, displacement, section_resultants, stress
 from reference3d.frames import face_frame, rod_frame
 from reference3d.quadratic import nodal_weights
-
-if TYPE_CHECKING:
-    from cases.scene import ContactPair, End, Rod, Scene
 
 Array = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
@@ -113,6 +110,13 @@ class Solution:
     refinement: int
     rods: dict[str, RodResult]
     pairs: dict[str, PairResult]
+
+    def frame(self, rod: str, station: Array) -> tuple[Array, Array]:
+        """Points of the undeformed centre line, global, mm, shape (3, n), and rows e1, e2, t there, (n, 3, 3)."""
+        frame = rod_frame(self.rods[rod].rod)
+        station = np.asarray(station, dtype=np.float64)
+        points = frame.origin[:, None] + np.outer(frame.axes[2], station)
+        return points, np.tile(frame.axes, (len(station), 1, 1))
 
     def displacement(self, rod: str, station: Array) -> Array:
         """Displacement of the centre line at arc lengths `station`, global, mm, shape (3, n)."""

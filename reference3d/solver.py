@@ -20,6 +20,7 @@ from reference3d.factor import solve as solve_layers
 from reference3d.field import Field, mirrored
 from reference3d.frames import is_symmetric, rod_frame
 from reference3d.quadratic import line_nodes
+from reference3d.scope import rectangle, require_treatable
 from reference3d.solution import Cost, PairResult, RodResult, Solution
 
 Array = NDArray[np.float64]
@@ -48,13 +49,14 @@ def solve(scene: Scene, refinement: int = DEFAULT_REFINEMENT, located: Solution 
     Raises
     ------
     SceneError
-        if the scene is outside what this solver treats: a rod without a clamp, a Poisson's ratio next to
-        0.5, rods in contact that are not parallel, faces of a pair that are not.
+        if the scene is outside what this solver treats: what `scope` refuses, a rod without a clamp, a Poisson's
+        ratio next to 0.5, rods in contact that are not parallel, faces of a pair that are not.
     ValueError
         if `refinement` is below 1.
     """
     if refinement < 1:
         raise ValueError(f"refinement: found {refinement}; a whole number of at least 1 is needed")
+    require_treatable(scene)
     _require_support(scene)
     _require_compressible(scene)
     begin = time.perf_counter()
@@ -105,7 +107,7 @@ def _candidates(pair: ContactPair, nodes: ContactNodes, located: Solution | None
         return np.ones(nodes.area.size, dtype=bool)
     coarse = located.pairs[pair.name]
     touched = coarse.station[(coarse.pressure > 0.0).any(axis=1)]
-    sections = [located.scene.rod(side.rod).section for side in (pair.first, pair.second)]
+    sections = [rectangle(located.scene.rod(side.rod)) for side in (pair.first, pair.second)]
     margin = MARGIN * min(min(section.width, section.height) for section in sections)
     near = near_contact(nodes.station, touched, margin)
     return np.repeat(near, len(nodes.lateral))
