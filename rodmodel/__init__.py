@@ -7,13 +7,17 @@ Needs numpy, scipy and the plain data of `cases.scene`, whose names it re-export
 """
 
 from cases.scene import (
+    Box,
+    Circle,
     Clamp,
     ContactPair,
     Helix,
     Line,
     LineLoad,
     Material,
+    Polygon,
     Rectangle,
+    Ring,
     Rod,
     RodFace,
     Scene,
@@ -25,6 +29,8 @@ from rodmodel.solution import ContactPoints, Cost, Solution
 from rodmodel.solver import solve
 
 __all__ = [
+    "Box",
+    "Circle",
     "Clamp",
     "ContactPair",
     "ContactPoints",
@@ -33,7 +39,9 @@ __all__ = [
     "Line",
     "LineLoad",
     "Material",
+    "Polygon",
     "Rectangle",
+    "Ring",
     "Rod",
     "RodFace",
     "Scene",

@@ -13,6 +13,7 @@ import numpy as np
 
 from cases.scene import Rod, Scene
 from rodmodel.pairing import opposite_stations
+from rodmodel.shape import extents
 
 # Distances from a clamp and from a zone's end, in section heights.
 FROM_CLAMP = (0.2, 1.0)
@@ -25,7 +26,8 @@ def graded(scene: Scene) -> Scene:
 
 
 def _graded_rod(scene: Scene, rod: Rod) -> Rod:
-    height = max(rod.section.width, rod.section.height)
+    x_min, x_max, y_min, y_max = extents(rod.section)
+    height = max(x_max - x_min, y_max - y_min)
     length = rod.element_borders[-1]
     new = list(rod.element_borders)
     for support in scene.supports:

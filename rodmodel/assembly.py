@@ -17,7 +17,7 @@ from rodmodel.axial import shape_functions
 from rodmodel.centre_line import darboux
 from rodmodel.chain import Chain
 from rodmodel.mesh import RodMesh
-from rodmodel.section import Fields, section_stiffness
+from rodmodel.section import Darboux, Fields, section_stiffness
 from rodmodel.stiffness import Element, ElementFamily, condensed_element, element_family
 
 Array = NDArray[np.float64]
@@ -39,9 +39,8 @@ class ElementStore:
     _elements: dict[Hashable, Element] = field(default_factory=dict)
     chains: dict[str, Chain] = field(default_factory=dict)
 
-    def element(self, rod: Rod, fields: Fields, order: int, length: float) -> Element:
-        """Condensed element of the rod for unit Young's modulus; `length` in mm."""
-        turning = darboux(rod.centre_line)
+    def element(self, rod: Rod, turning: Darboux, fields: Fields, order: int, length: float) -> Element:
+        """Condensed element of the rod for unit Young's modulus; `length` in mm, turning of its frame in rad/mm."""
         kind = (rod.section, rod.material.poisson_ratio, fields, order, turning)
         if kind not in self._families:
             section = section_stiffness(rod.section, replace(rod.material, young_modulus=1.0), fields, turning)
@@ -92,8 +91,9 @@ class AssembledRod:
 def assembled_rod(scene: Scene, rod: Rod, mirrors: Mirrors, mesh: RodMesh, store: ElementStore) -> AssembledRod:
     """Make (or fetch from `store`) the elements of the mesh and factorise the chain."""
     clamped = {support.end for support in scene.supports if support.rod == rod.name}
+    turning = darboux(rod.centre_line)
     elements = tuple(
-        store.element(rod, Fields(int(level), *mirrors), int(order), float(length))
+        store.element(rod, turning, Fields(int(level), *mirrors), int(order), float(length))
         for level, order, length in zip(mesh.levels, mesh.orders, np.diff(mesh.borders), strict=True)
     )
     chain = Chain(

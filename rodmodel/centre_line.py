@@ -66,6 +66,7 @@ def frame(line: CentreLine) -> Array:
     return screw_motion(line).axes
 
 
+@lru_cache(maxsize=1024)
 def darboux(line: CentreLine) -> tuple[float, float, float]:
     """k1, k2 and tau: rate of turning of the frame about e1, e2 and t, rad/mm."""
     motion = screw_motion(line)
@@ -77,6 +78,8 @@ def darboux(line: CentreLine) -> tuple[float, float, float]:
 
 def _turned(motion: ScrewMotion, vectors: Array, station: Array) -> Array:
     """Vectors (global, shape (m, 3)) after the turn to each station, shape (n, m, 3); Rodrigues' formula."""
+    if motion.turning == 0.0:
+        return np.broadcast_to(vectors, (len(station), *vectors.shape))
     angle = motion.turning * station[:, None, None]
     along = (vectors @ motion.axis)[:, None] * motion.axis
     across = np.cross(motion.axis, vectors)
@@ -99,7 +102,7 @@ def centre_points(line: CentreLine, station: Array) -> Array:
 def global_points(rod: Rod, points: Array) -> Array:
     """Global coordinates of the points (x, y, s) of a rod, mm; shape (3, n) to (3, n)."""
     across = frames(rod.centre_line, points[2])[:, :2]
-    return centre_points(rod.centre_line, points[2]) + np.einsum("cn,ncg->gn", points[:2], across)
+    return np.asarray(centre_points(rod.centre_line, points[2]) + np.einsum("cn,ncg->gn", points[:2], across))
 
 
 def local_points(rod: Rod, points: Array) -> Array:

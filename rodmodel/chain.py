@@ -99,8 +99,11 @@ class Chain:
         """Part of an element's condensed stiffness that couples its two nodes, or one with itself."""
         element = elements[index]
         count = element.fields.count
-        rows, columns = (side * count + self.ends[index][side] for side in (row_side, column_side))
-        return np.asarray(element.condensed[rows[:, None], columns])
+        rows, columns = self.ends[index][row_side], self.ends[index][column_side]
+        block = element.condensed[row_side * count :, column_side * count :][:count, :count]
+        if len(rows) == len(columns) == count:
+            return block
+        return np.asarray(block[rows[:, None], columns])
 
     def half_solve(self, loads: Array) -> Array:
         """L^-1 loads with K = L L^T, whose inner products are compliances; on the carried fields, shape (size, m)."""

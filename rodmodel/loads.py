@@ -12,7 +12,7 @@ from cases.scene import LineLoad, Load, Rod, Section, SectionForce, SectionMomen
 from rodmodel.assembly import AssembledRod, Part, point_parts
 from rodmodel.axial import gauss, shape_functions
 from rodmodel.centre_line import frames
-from rodmodel.section import STRAIGHT, Fields, U, V, W, section_quadrature, section_values
+from rodmodel.section import STRAIGHT, Fields, U, V, W, product_quadrature, section_values
 
 Array = NDArray[np.float64]
 
@@ -52,7 +52,7 @@ def linear_traction(section: Section, fields: Fields) -> Array:
 
     Bending moments as a normal traction linear in x and y, torque as T / I_p (-y, x).
     """
-    x, y, weight = section_quadrature(section, max(fields.level, 1), STRAIGHT)
+    x, y, weight = product_quadrature(section, fields.level, STRAIGHT)
     values = section_values(section, fields, x, y) * weight
     xx, xy, yy = weight @ (x * x), weight @ (x * y), weight @ (y * y)
     # t = a x + b y with int t y = M1 and -int t x = M2

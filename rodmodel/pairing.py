@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from cases.scene import ContactPair, Face, Rod, Scene
+from cases.scene import FACES, Box, ContactPair, Face, Rectangle, Rod, Scene
 from rodmodel.axial import lobatto
 from rodmodel.centre_line import frame, global_points, local_points
 
@@ -39,10 +39,13 @@ class FaceAxes:
 
 
 def face_axes(rod: Rod, face: Face) -> FaceAxes:
-    """Geometry of a face of a rod."""
+    """Geometry of a face of a rod; ValueError where its section has no flat faces."""
     axis = 1 if face in ("top", "bottom") else 0
     sign = 1.0 if face in ("top", "right") else -1.0
-    extents = (rod.section.width, rod.section.height)
+    section = rod.section
+    if not isinstance(section, Rectangle | Box):
+        raise ValueError(f"rod '{rod.name}': only rectangles and boxes have the faces {', '.join(FACES)}")
+    extents = (section.width, section.height)
     normal = sign * frame(rod.centre_line)[axis]
     return FaceAxes(axis, sign, 0.5 * extents[axis], 0.5 * extents[1 - axis], normal)
 

@@ -1,7 +1,7 @@
 """Functions over the cross-section and the section stiffness matrices S_ab.
 
-Level h_k: each displacement component (u, v, w) is a complete polynomial of degree k in (x, y), spanned by products
-of Legendre polynomials, which are orthogonal over the rectangle (raw monomials lose all digits at high level).
+Level h_k: each displacement component (u, v, w) is a complete polynomial of degree k in (x, y), spanned by functions
+that are orthonormal over the section (`rodmodel.basis`).
 Strain in the local frame, order (xx, yy, ss, ys, xs, xy):
 
     eps = B_0 psi + B_1 psi',   S_ab = int B_a^T D B_b sqrt(g) dA.
@@ -15,8 +15,9 @@ from functools import cached_property, lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from cases.scene import Material, Rectangle
-from rodmodel.axial import gauss, legendre, legendre_derivatives
+from cases.scene import Material, Section
+from rodmodel.basis import basis_slopes, basis_values, section_basis
+from rodmodel.shape import section_quadrature
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -27,8 +28,8 @@ U, V, W = 0, 1, 2
 Darboux = tuple[float, float, float]
 
 STRAIGHT: Darboux = (0.0, 0.0, 0.0)
-# Points a side by which the quadrature of a curved rod exceeds that of a straight one.
-EXTRA_POINTS = 8
+# Degree by which the quadrature of a curved rod exceeds that of a straight one.
+EXTRA_DEGREES = 16
 
 
 @dataclass(frozen=True)
@@ -48,7 +49,7 @@ class Fields:
 
     @cached_property
     def table(self) -> IntArray:
-        """Component (0, 1, 2 for u, v, w) and degrees i, j of P_i(2x/width) P_j(2y/height), shape (3, n_fields)."""
+        """Component (0, 1, 2 for u, v, w) and degrees i, j of the function, shape (3, n_fields)."""
         triples = [
             (component, total - j, j)
             for component in (U, V, W)
@@ -85,40 +86,29 @@ def _embedding(smaller: Fields, larger: Fields) -> IntArray:
     return np.array([places[tuple(column)] for column in smaller.table.T.tolist()], dtype=np.int64)
 
 
-def section_values(section: Rectangle, chosen: Fields, x: Array, y: Array) -> Array:
+def section_values(section: Section, chosen: Fields, x: Array, y: Array) -> Array:
     """Values of every field's scalar function at section points, shape (n_fields, n_points).
 
-    Scaled to mean square one over the section, so that the first one is 1 and its coefficient the mean displacement.
+    Mean square one over the section, so that the first one is 1 and its coefficient the mean displacement.
     """
-    along_x, along_y = _scaled_legendre(section, chosen, x, y)
-    _, i, j = chosen.table
-    return np.asarray(along_x[i] * along_y[j])
+    return np.asarray(basis_values(section_basis(section, chosen.level), x, y)[_functions(chosen)])
 
 
-def section_slopes(section: Rectangle, chosen: Fields, x: Array, y: Array) -> tuple[Array, Array]:
+def section_slopes(section: Section, chosen: Fields, x: Array, y: Array) -> tuple[Array, Array]:
     """Derivatives by x and by y of `section_values`, each of shape (n_fields, n_points)."""
-    along_x, along_y = _scaled_legendre(section, chosen, x, y)
-    scale = _mean_square_one(chosen.level)
-    slope_x = scale * legendre_derivatives(chosen.level, 2.0 * x / section.width) * (2.0 / section.width)
-    slope_y = scale * legendre_derivatives(chosen.level, 2.0 * y / section.height) * (2.0 / section.height)
+    slope_x, slope_y = basis_slopes(section_basis(section, chosen.level), x, y)
+    functions = _functions(chosen)
+    return slope_x[functions], slope_y[functions]
+
+
+def _functions(chosen: Fields) -> IntArray:
+    """Which function of the basis each field has: they stand in the order of i + j, then of j."""
     _, i, j = chosen.table
-    return slope_x[i] * along_y[j], along_x[i] * slope_y[j]
-
-
-def _scaled_legendre(section: Rectangle, chosen: Fields, x: Array, y: Array) -> tuple[Array, Array]:
-    scale = _mean_square_one(chosen.level)
-    return (
-        scale * legendre(chosen.level, 2.0 * x / section.width),
-        scale * legendre(chosen.level, 2.0 * y / section.height),
-    )
-
-
-def _mean_square_one(degree: int) -> Array:
-    return np.asarray(np.sqrt(2.0 * np.arange(degree + 1) + 1.0)[:, None])
+    return np.asarray((i + j) * (i + j + 1) // 2 + j)
 
 
 def strain_operators(
-    section: Rectangle, chosen: Fields, x: Array, y: Array, turning: Darboux
+    section: Section, chosen: Fields, x: Array, y: Array, turning: Darboux
 ) -> tuple[Array, Array, Array]:
     """B_0 and B_1 at section points, each of shape (n_points, 6, n_fields), and sqrt(g) there, shape (n_points,).
 
@@ -172,16 +162,13 @@ def elasticity_matrix(material: Material, level: int) -> Array:
     return law
 
 
-def section_quadrature(section: Rectangle, level: int, turning: Darboux) -> tuple[Array, Array, Array]:
-    """Gauss points x, y (mm) and weights (mm^2) for products of two level-k functions.
+def product_quadrature(section: Section, level: int, turning: Darboux) -> tuple[Array, Array, Array]:
+    """Points x, y (mm) and weights (mm^2) for products of two level-k functions.
 
-    Exact for a straight rod; a curved one divides by sqrt(g), which `EXTRA_POINTS` more a side resolve to round-off
-    down to a radius of the section's size.
+    Exact for a straight rod; a curved one divides by sqrt(g), which `EXTRA_DEGREES` more resolve to round-off down to
+    a radius of the section's size.
     """
-    xi, weight = gauss(level + 1 + (EXTRA_POINTS if any(turning) else 0))
-    x, y = np.meshgrid(0.5 * section.width * xi, 0.5 * section.height * xi, indexing="ij")
-    area_weight = 0.25 * section.width * section.height * np.outer(weight, weight)
-    return x.ravel(), y.ravel(), area_weight.ravel()
+    return section_quadrature(section, 2 * level + (EXTRA_DEGREES if any(turning) else 0))
 
 
 @dataclass(frozen=True, eq=False)
@@ -193,12 +180,12 @@ class SectionStiffness:
     s11: Array
 
 
-def section_stiffness(section: Rectangle, material: Material, chosen: Fields, turning: Darboux) -> SectionStiffness:
+def section_stiffness(section: Section, material: Material, chosen: Fields, turning: Darboux) -> SectionStiffness:
     """Section stiffness matrices: N, N mm and N mm^2 per unit of psi and psi'.
 
     turning : k1, k2, tau of the frame, rad/mm
     """
-    x, y, weight = section_quadrature(section, chosen.level, turning)
+    x, y, weight = product_quadrature(section, chosen.level, turning)
     b0, b1, stretch = strain_operators(section, chosen, x, y, turning)
     b0, b1 = (b.reshape(-1, chosen.count) for b in (b0, b1))
     law = elasticity_matrix(material, chosen.level)

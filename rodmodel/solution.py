@@ -22,7 +22,7 @@ from rodmodel.section import (
     V,
     W,
     elasticity_matrix,
-    section_quadrature,
+    product_quadrature,
     section_values,
     strain_operators,
 )
@@ -221,7 +221,7 @@ class Solution:
 def _resultant_operators(rod: Rod, fields: Fields) -> tuple[Array, Array]:
     """What psi and psi' of every field add to N, Q1, Q2, M1, M2, T, each of shape (6, n_fields)."""
     turning = darboux(rod.centre_line)
-    x, y, weight = section_quadrature(rod.section, fields.level, turning)
+    x, y, weight = product_quadrature(rod.section, fields.level, turning)
     b0, b1, _ = strain_operators(rod.section, fields, x, y, turning)
     # What each stress component at a point adds to each resultant; components xx, yy, xy add nothing.
     lever = np.zeros((6, 6, len(x)))
@@ -233,7 +233,7 @@ def _resultant_operators(rod: Rod, fields: Fields) -> tuple[Array, Array]:
 
 def _rigid_motions(section: Section, fields: Fields) -> Array:
     """Unit translations along, then rotations about e1, e2, t of a section, as its fields, shape (6, n_fields)."""
-    x, y, weight = section_quadrature(section, max(fields.level, 1), STRAIGHT)
+    x, y, weight = product_quadrature(section, fields.level, STRAIGHT)
     values = section_values(section, fields, x, y) * (weight / weight.sum())
     motions = np.zeros((6, fields.count))
     for motion, component, function in (

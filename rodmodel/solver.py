@@ -41,7 +41,7 @@ def solve(scene: Scene, level: Grades = 5, order: Grades = 6) -> Solution:
     Raises
     ------
     SceneError
-        if a rod is not held by any support, or is bent more sharply than its section is wide.
+        if a rod is not held by any support.
     ValueError
         if there is not one level or order for each element.
     """

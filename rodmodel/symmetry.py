@@ -13,6 +13,7 @@ from cases.scene import Load, Rod, Scene, SectionMoment
 from rodmodel.assembly import Mirrors
 from rodmodel.centre_line import frame, screw_motion
 from rodmodel.pairing import face_axes
+from rodmodel.shape import mirror_planes
 
 Array = NDArray[np.float64]
 
@@ -44,14 +45,15 @@ def _is_mirror_plane(scene: Scene, normal: Array) -> bool:
 
 
 def _lies_in(rod: Rod, origin: Array, normal: Array) -> bool:
-    """Whether a rod's centre line lies in the plane, and an axis of its section stays across it."""
+    """Whether a rod's centre line lies in the plane, and its section is and stays symmetric about it."""
     motion = screw_motion(rod.centre_line)
     if abs(normal @ (motion.start - origin)) > TOLERANCE * rod.length:
         return False
-    if max(abs(axis @ normal) for axis in motion.axes[:2]) < 1.0 - TOLERANCE:
+    across = [abs(axis @ normal) > 1.0 - TOLERANCE for axis in motion.axes[:2]]
+    if not any(mirror and lies for mirror, lies in zip(mirror_planes(rod.section), across, strict=True)):
         return False
     # A line that does not turn stays in the plane; one that turns must do so about the plane's normal.
-    return motion.turning == 0.0 or abs(motion.axis @ normal) > 1.0 - TOLERANCE
+    return motion.turning == 0.0 or bool(abs(motion.axis @ normal) > 1.0 - TOLERANCE)
 
 
 def _keeps(load: Load, normal: Array) -> bool:

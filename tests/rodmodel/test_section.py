@@ -11,7 +11,7 @@ from rodmodel.section import (
     V,
     W,
     elasticity_matrix,
-    section_quadrature,
+    product_quadrature,
     section_slopes,
     section_stiffness,
     section_values,
@@ -30,7 +30,7 @@ def test_a_level_has_the_complete_polynomials_of_pascals_triangle(level: int, co
 @pytest.mark.parametrize("level", [1, 4, 12])
 def test_functions_are_orthonormal_over_the_section(level: int) -> None:
     fields = Fields(level)
-    x, y, weight = section_quadrature(SECTION, level, STRAIGHT)
+    x, y, weight = product_quadrature(SECTION, level, STRAIGHT)
     values = section_values(SECTION, fields, x, y)
     one = values[fields.indices(U)]
     gram = (one * weight) @ one.T / (SECTION.width * SECTION.height)
