@@ -211,8 +211,8 @@ def _require_orthonormal(basis: SectionBasis) -> None:
         x_min, x_max, y_min, y_max = extents(basis.section)
         shape = f"{type(basis.section).__name__.lower()} of {x_max - x_min:g} x {y_max - y_min:g} mm"
         raise ValueError(
-            f"{shape}: found walls so thin that its functions of level {basis.level} are orthonormal to {loss:.1g} only ({_LARGEST_LOSS:g} is asked); "
-            "thicker walls or a lower level are needed"
+            f"{shape}: found walls so thin that functions of level {basis.level} are orthonormal to {loss:.1g} only; "
+            f"{_LARGEST_LOSS:g} is needed, by thicker walls or a lower level"
         )
 
 
