@@ -26,8 +26,12 @@ def stiffness_terms(order: int, section: SectionStiffness) -> Array:
     Shape (3, n, n) with n = (order + 1) n_fields: M_00 kron S_00, M_01 kron S_01 and its transpose, M_11 kron S_11.
     """
     m00, m01, m11 = axial_matrices(order)
-    mixed = np.kron(m01, section.s01)
-    return np.stack([np.kron(m00, section.s00), mixed + mixed.T, np.kron(m11, section.s11)])
+    n_axial, n_fields = len(m00), len(section.s00)
+    terms = np.empty((3, n_axial, n_fields, n_axial, n_fields))
+    for term, axial, over_section in zip(terms, (m00, m01, m11), (section.s00, section.s01, section.s11), strict=True):
+        np.multiply(axial[:, None, :, None], over_section[:, None, :], out=term)
+    terms[1] += terms[1].transpose(2, 3, 0, 1).copy()
+    return terms.reshape(3, n_axial * n_fields, n_axial * n_fields)
 
 
 @dataclass(frozen=True, eq=False)

@@ -142,7 +142,7 @@ def _gap_parts(
             grid = grids[pair.name]
             facing = facing_points(scene, pair, *grid.flat())
             points = facing.first if side is pair.first else facing.second
-            found = point_parts(assembled, points[2], _inward(assembled.rod, side.face, grid, points))
+            found = point_parts(assembled, points[2], inward_directions(assembled.rod, side.face, grid, points))
             parts += [replace(part, columns=part.columns + count) for part in found]
             place = np.arange(points_of[pair.name].start, points_of[pair.name].stop)
             places.append(place)
@@ -150,7 +150,7 @@ def _gap_parts(
     return parts, np.concatenate(places)
 
 
-def _inward(rod: Rod, face: Face, grid: ContactGrid, points: Array) -> Callable[[Fields], Array]:
+def inward_directions(rod: Rod, face: Face, grid: ContactGrid, points: Array) -> Callable[[Fields], Array]:
     """Value of every field in the direction -n of a face at its contact points, shape (n_fields, n_points)."""
     axes = face_axes(rod, face)
     # Parallel rods: every station has the same points across.
