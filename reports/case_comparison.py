@@ -9,7 +9,16 @@ import numpy as np
 
 from cases.case import Case, Check
 from cases.scene import Vector
-from reports.comparison import CURVES, Comparison, Estimate, Extrapolate, compare, edges_estimate, sequence_estimate
+from reports.comparison import (
+    CURVES,
+    Comparison,
+    Estimate,
+    Extrapolate,
+    compare,
+    edges_estimate,
+    sequence_estimate,
+    untreated,
+)
 from reports.quantities import Quantities
 from reports.solution import Array, Model
 from reports.truth import SOURCE, IndependentValues, independent_values
@@ -77,7 +86,35 @@ def case_comparisons(
     rod, references : quantities of the rod model and of the 3D reference on three meshes, coarse to fine, all
         evaluated at the case's `evaluation_points`
     """
+    found = _against_reference(case, rod, references, extrapolate)
+    if case.independent is not None:
+        truth = independent_values(case.independent, case.scene)
+        found += _against_truth(case, "rod", rod, truth)
+        found += _against_truth(case, "reference", references[-1], truth)
+    return (*found, *_against_published(case, rod))
+
+
+def comparisons_without_reference(case: Case, rod: Quantities, refusal: str) -> tuple[Comparison, ...]:
+    """All comparisons of a case whose scene the 3D reference cannot treat, in the order of `case_comparisons`.
+
+    Parameters
+    ----------
+    refusal : why it cannot, in one sentence
+    """
+    reason = f"the 3D reference cannot treat this case yet: {refusal}"
     found = [
+        untreated(check, extract(rod, check), reason, kind="reference", source=REFERENCE_SOURCE)
+        for check in case.compare
+    ]
+    if case.independent is not None:
+        found += _against_truth(case, "rod", rod, independent_values(case.independent, case.scene))
+    return (*found, *_against_published(case, rod))
+
+
+def _against_reference(
+    case: Case, rod: Quantities, references: Sequence[Quantities], extrapolate: Extrapolate
+) -> list[Comparison]:
+    return [
         compare(
             check,
             "rod",
@@ -89,10 +126,10 @@ def case_comparisons(
         )
         for check in case.compare
     ]
-    if case.independent is not None:
-        truth = independent_values(case.independent, case.scene)
-        found += _against_truth(case, "rod", rod, truth)
-        found += _against_truth(case, "reference", references[-1], truth)
+
+
+def _against_published(case: Case, rod: Quantities) -> list[Comparison]:
+    found = []
     for published in case.published:
         check = Check(published.quantity, published.of, published.tolerance)
         found.append(
@@ -106,7 +143,7 @@ def case_comparisons(
                 outcomes=[rod.outcome],
             )
         )
-    return tuple(found)
+    return found
 
 
 def _reference_estimate(check: Check, references: Sequence[Quantities], extrapolate: Extrapolate) -> Estimate:

@@ -179,6 +179,27 @@ def compare(
     )
 
 
+def untreated(check: Check, value: Array, reason: str, *, kind: Kind, source: str) -> Comparison:
+    """The rod model's value where the solver that it should be held against cannot treat the scene."""
+    largest = magnitude(value)
+    shown = largest[largest.argmax() :][:1] if check.quantity in CURVES and value.size else value
+    return Comparison(
+        quantity=check.quantity,
+        of=check.of,
+        point=check.point,
+        model="rod",
+        kind=kind,
+        source=source,
+        value=tuple(shown.tolist()),
+        reference=(),
+        difference=None,
+        uncertainty=None,
+        tolerance=check.tolerance,
+        verdict="not resolved",
+        reason=reason,
+    )
+
+
 def _ratio(numerator: float, denominator: float) -> float:
     if numerator == 0.0:
         return 0.0

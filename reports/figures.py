@@ -12,10 +12,9 @@ import numpy as np
 import plotly.graph_objects as go
 from plotly.subplots import make_subplots
 
-from cases.scene import Rod
-from reports.geometry import AXES, frame
+from reports.geometry import AXES
 from reports.quantities import ContactQuantities, PressureProfile, RodQuantities
-from reports.runner import CaseRun
+from reports.runner import CaseRun, Run
 from reports.solution import Array
 from reports.truth import IndependentValues
 
@@ -32,28 +31,31 @@ _POINTS = {"symbol": "circle-open", "size": 6, "color": TRUTH, "line": {"width":
 
 
 def deflection_figure(run: CaseRun, truth: IndependentValues | None) -> go.Figure:
-    """Transverse deflection of every rod, and below it how far the others are from the 3D reference."""
-    rods = run.case.scene.rods
-    figure = _panels([rod.name for rod in rods], rows=2)
+    """Transverse deflection of every rod, and below it how far the others are from the 3D reference, if there is one."""
+    rods, rows = run.case.scene.rods, 2 if run.references else 1
+    figure = _panels([rod.name for rod in rods], rows)
     for column, rod in enumerate(rods, start=1):
-        model, reference = run.rod.quantities.rod(rod.name), run.references[-1].quantities.rod(rod.name)
+        curves = [(name, answer.quantities.rod(rod.name)) for name, answer in _answers(run)]
+        reference = curves[-1][1]
         component = int(np.argmax(np.abs(reference.displacement).max(axis=1)))
-        x = _along(rod, reference)
+        axis, x = _along(reference)
         first = column == 1
-        curves = ((ROD_NAME, model), (REFERENCE_NAME, reference))
         for name, found in curves:
             _add_line(figure, name, x, found.displacement[component], 1, column, legend=first)
-        difference = 1000.0 * (model.displacement - reference.displacement)[component]
-        _add_line(figure, ROD_NAME, x, difference, 2, column, legend=False)
+        for name, found in curves[:-1]:
+            difference = 1000.0 * (found.displacement - reference.displacement)[component]
+            _add_line(figure, name, x, difference, 2, column, legend=False)
         if truth is not None and rod.name in truth.stations and component == 1:
             at = np.searchsorted(reference.station, truth.stations[rod.name] - 1e-6 * rod.length)
             values = truth.estimates["deflection", rod.name].value
             _add_points(figure, x[at], values, 1, column, legend=first)
-            apart = 1000.0 * (values - reference.displacement[component, at])
-            _add_points(figure, x[at], apart, 2, column, legend=False)
+            if rows == 2:
+                apart = 1000.0 * (values - reference.displacement[component, at])
+                _add_points(figure, x[at], apart, 2, column, legend=False)
         figure.update_yaxes(title_text=f"u<sub>{AXES[component]}</sub>, mm", row=1, col=column)
-        figure.update_yaxes(title_text="difference, µm", row=2, col=column)
-        figure.update_xaxes(title_text=f"{_axis_name(rod)}, mm", row=2, col=column)
+        if rows == 2:
+            figure.update_yaxes(title_text="difference, µm", row=2, col=column)
+        figure.update_xaxes(title_text=f"{axis}, mm", row=rows, col=column)
     return _styled(figure, 460)
 
 
@@ -62,18 +64,18 @@ def pressure_figure(run: CaseRun, pair: str, truth: IndependentValues | None) ->
 
     Dotted upright lines are published edges.
     """
-    model, reference = run.rod.quantities.contact(pair), run.references[-1].quantities.contact(pair)
+    curves = [(name, answer.quantities.contact(pair)) for name, answer in _answers(run)]
     independent = None if truth is None else truth.pressure.get(pair)
     titles = ("middle of the width", "mean over the width", "outer border")
     figure = _panels(titles, rows=1, shared_y=True)
     for column, part in enumerate(("middle", "mean", "outer"), start=1):
         first = column == 1
-        for name, found in ((ROD_NAME, model), (REFERENCE_NAME, reference)):
+        for name, found in curves:
             _add_line(figure, name, *_to_the_edges(found, part), 1, column, legend=first)
         if independent is not None:
             positions, values = _thinned(independent, part)
             _add_points(figure, positions, values, 1, column, legend=first)
-        figure.update_xaxes(title_text=f"{AXES[reference.axis]}, mm", row=1, col=column)
+        figure.update_xaxes(title_text=f"{AXES[curves[0][1].axis]}, mm", row=1, col=column)
     published = [
         edge
         for entry in run.case.published
@@ -90,7 +92,7 @@ def pressure_figure(run: CaseRun, pair: str, truth: IndependentValues | None) ->
             mode="lines",
             line={"color": PUBLISHED, "width": 1.6, "dash": "dot"},
         )
-    edges = [edge for found in (model, reference) for stretch in found.edges_outer for edge in stretch]
+    edges = [edge for _, found in curves for stretch in found.edges_outer for edge in stretch]
     if edges:
         margin = 0.15 * (max(edges) - min(edges)) + 1.0
         figure.update_xaxes(range=[min(edges) - margin, max(edges) + margin])
@@ -104,27 +106,32 @@ def moment_figure(run: CaseRun) -> go.Figure:
     rods = run.case.scene.rods
     figure = _panels([rod.name for rod in rods], rows=2)
     for column, rod in enumerate(rods, start=1):
-        for name, answer in ((ROD_NAME, run.rod), (REFERENCE_NAME, run.references[-1])):
+        for name, answer in _answers(run):
             found = answer.quantities.rod(rod.name)
-            x, moment = _along(rod, found), found.moment / 1000.0
+            moment = found.moment / 1000.0
+            axis, x = _along(found)
             _add_line(figure, name, x, moment, 1, column, legend=column == 1)
             _add_line(figure, name, x, found.stress[3] / 1000.0 - moment, 2, column, legend=False)
         figure.update_yaxes(title_text="M<sub>1</sub>, kN mm", row=1, col=column)
         figure.update_yaxes(title_text="difference, kN mm", row=2, col=column)
-        figure.update_xaxes(title_text=f"{_axis_name(rod)}, mm", row=2, col=column)
+        figure.update_xaxes(title_text=f"{axis}, mm", row=2, col=column)
         margin = 0.03 * rod.length
         figure.update_xaxes(range=[x.min() - margin, x.max() + margin], col=column)
     return _styled(figure, 460)
 
 
-def _axis_name(rod: Rod) -> str:
-    """The global axis that a rod follows most nearly."""
-    return AXES[int(np.argmax(np.abs(frame(rod)[2])))]
+def _answers(run: CaseRun) -> list[tuple[str, Run]]:
+    """The rod model's answer and, if there is one, that of the 3D reference on its finest mesh."""
+    return [(ROD_NAME, run.rod), *((REFERENCE_NAME, finest) for finest in run.references[-1:])]
 
 
-def _along(rod: Rod, found: RodQuantities) -> Array:
-    position: Array = found.position[AXES.index(_axis_name(rod))]
-    return position
+def _along(found: RodQuantities) -> tuple[str, Array]:
+    """Abscissa of a rod's curves: the global axis it follows most nearly, or the arc length s of a curved rod, mm."""
+    chord = found.position[:, -1] - found.position[:, 0]
+    if np.linalg.norm(chord) < (1.0 - 1e-9) * found.station[-1]:
+        return "s", found.station
+    axis = int(np.argmax(np.abs(chord)))
+    return AXES[axis], found.position[axis]
 
 
 def _to_the_edges(contact: ContactQuantities, part: str) -> tuple[Array, Array]:

@@ -6,15 +6,17 @@ gives every quantity its unit and its definition in words; the page and the JSON
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from cases.scene import ContactPair, End, Rod, Scene, Vector
+from cases.scene import ContactPair, End, Helix, Rod, Vector
 from reports.contact_edges import contact_stretches, edge_resolution
 from reports.equilibrium import AppliedForces, applied_forces, equilibrium_residual, equilibrium_resultants
-from reports.geometry import centre_line_points, contact_limits, pair_axis
+from reports.geometry import contact_limits, pair_axis
+from reports.sections import section_modulus
 from reports.solution import Array, ContactProfile, Solution
 
 
@@ -89,8 +91,8 @@ DEFINITIONS: Mapping[str, Definition] = {
         "Maximum bending stress",
         "MPa",
         "|M1| / W in the clamped section, M1 integrated from the computed stress there, "
-        "W = width height^2 / 6. This is the paper's definition; the statically exact moment is several per "
-        "cent smaller.",
+        "W = I_x / y_max of the section (width height^2 / 6 of a rectangle). This is the paper's definition; its "
+        "statically exact moment is several per cent smaller.",
     ),
     "stress_s": Definition("Stress along the rod", "MPa", "sigma_s at a stated point (x, y, s) of a rod."),
     "strain_energy": Definition(
@@ -100,7 +102,8 @@ DEFINITIONS: Mapping[str, Definition] = {
         "Equilibrium residual",
         "",
         "Largest unbalanced force, or moment about a rod's start over its length, of the loads, contact "
-        "forces and reactions on any rod, relative to the sum of the loads' magnitudes.",
+        "forces and reactions on any rod, relative to the sum of the loads' magnitudes (line loads by their "
+        "resultants, moments over the rod's length).",
     ),
     "stress_residual": Definition(
         "Moment residual",
@@ -163,6 +166,7 @@ class RodQuantities:
     ----------
     station : arc length from the rod's start, mm, shape (n,)
     position : undeformed centre line, global, mm, shape (3, n)
+    axes : rows e1, e2, t of the undeformed frames, shape (n, 3, 3)
     displacement : of the centre line, global components, mm, shape (3, n)
     equilibrium, stress : N, Q1, Q2 (N), M1, M2, T (N mm) from equilibrium and from stress, shape (6, n)
     end_moment_equilibrium, end_moment_stress : M1 at the clamp, N mm; None for a rod without a clamp
@@ -172,6 +176,7 @@ class RodQuantities:
     rod: str
     station: Array
     position: Array
+    axes: Array
     displacement: Array
     equilibrium: Array
     stress: Array
@@ -250,14 +255,12 @@ def evaluate(
     """
     scene = solution.scene
     extra = stations or {}
-    applied = {rod.name: applied_forces(solution, rod) for rod in scene.rods}
+    at = {rod.name: merged_stations(rod, extra.get(rod.name, np.empty(0))) for rod in scene.rods}
+    applied = {rod.name: applied_forces(solution, rod, at[rod.name]) for rod in scene.rods}
     quantities = Quantities(
         outcome=solution.outcome,
         contacts=tuple(contact_quantities(solution, pair) for pair in scene.contacts),
-        rods=tuple(
-            rod_quantities(solution, rod, applied[rod.name], merged_stations(rod, extra.get(rod.name, np.empty(0))))
-            for rod in scene.rods
-        ),
+        rods=tuple(rod_quantities(solution, rod, applied[rod.name], at[rod.name]) for rod in scene.rods),
         point_stresses={
             (rod, point): float(stress_s(solution, rod, np.array([point]).T)[0]) for rod, point in stress_points
         },
@@ -286,13 +289,14 @@ def _require_finite(quantities: Quantities) -> None:
 
 
 def default_stations(rod: Rod) -> Array:
-    """61 evenly spaced stations, both ends among them, and the element borders, mm, ascending."""
+    """60 even steps (24 a turn of a helix of many), both ends, and the element borders, mm, ascending."""
     return merged_stations(rod, np.empty(0))
 
 
 def merged_stations(rod: Rod, extra: Array) -> Array:
     """`default_stations` and further ones, those closer than 1e-9 of the length merged."""
-    even = np.linspace(0.0, rod.length, 61)
+    turns = rod.centre_line.angle / (2.0 * math.pi) if isinstance(rod.centre_line, Helix) else 0.0
+    even = np.linspace(0.0, rod.length, 1 + max(60, math.ceil(24.0 * turns)))
     station = np.sort(np.concatenate([even, rod.element_borders, extra]))
     station = np.clip(station, 0.0, rod.length)
     keep = np.concatenate([[True], np.diff(station) > 1e-9 * rod.length])
@@ -302,14 +306,13 @@ def merged_stations(rod: Rod, extra: Array) -> Array:
 
 def contact_quantities(solution: Solution, pair: ContactPair) -> ContactQuantities:
     """Resultant, centre, edges, penetration and pressure of one pair."""
-    scene = solution.scene
-    axis = pair_axis(scene, pair)
+    axis = pair_axis(solution, pair)
     points = solution.contact_points(pair.name)
     resultant = np.asarray(points.normal @ points.force)
     total = float(points.force.sum())
     profile = solution.contact_profile(pair.name)
-    edges, resolution = _edges(scene, pair, profile, profile.middle)
-    edges_outer, outer_resolution = _edges(scene, pair, profile, profile.outer)
+    edges, resolution = _edges(solution, pair, profile, profile.middle)
+    edges_outer, outer_resolution = _edges(solution, pair, profile, profile.outer)
     return ContactQuantities(
         pair=pair.name,
         axis=axis,
@@ -326,12 +329,12 @@ def contact_quantities(solution: Solution, pair: ContactPair) -> ContactQuantiti
 
 
 def _edges(
-    scene: Scene, pair: ContactPair, profile: ContactProfile, pressure: Array
+    solution: Solution, pair: ContactPair, profile: ContactProfile, pressure: Array
 ) -> tuple[tuple[tuple[float, float], ...], float]:
     """Stretches in contact, in the global coordinate of the pair's axis, and their edges' resolution, mm."""
-    first, axis, limits = scene.rod(pair.first.rod), pair_axis(scene, pair), contact_limits(scene, pair)
+    axis, limits = pair_axis(solution, pair), contact_limits(solution, pair)
     stretches = contact_stretches(profile.station, pressure, limits)
-    ends = [centre_line_points(first, np.array(stretch))[axis] for stretch in stretches]
+    ends = [solution.frame(pair.first.rod, np.array(stretch))[0][axis] for stretch in stretches]
     along = tuple(sorted((float(min(pair_ends)), float(max(pair_ends))) for pair_ends in ends))
     return along, edge_resolution(profile.station, stretches, limits)
 
@@ -341,21 +344,23 @@ def rod_quantities(solution: Solution, rod: Rod, applied: AppliedForces, station
 
     Parameters
     ----------
-    applied : all forces on the rod
+    applied : all forces on the rod, by `applied_forces` with the same stations
     station : arc length, mm, from 0 to the rod's length, shape (n,)
     """
-    equilibrium = equilibrium_resultants(solution.scene, rod, applied, station)
+    equilibrium = equilibrium_resultants(solution, rod, applied, station)
     stress = solution.section_resultants(rod.name, station)
     clamped = [0 if clamp.end == "start" else -1 for clamp in solution.scene.supports if clamp.rod == rod.name]
     end_moment_equilibrium = end_moment_stress = max_bending_stress = None
     if clamped:
         end = max(clamped, key=lambda index: abs(float(equilibrium[3, index])))
         end_moment_equilibrium, end_moment_stress = float(equilibrium[3, end]), float(stress[3, end])
-        max_bending_stress = abs(end_moment_stress) / section_modulus(rod)
+        max_bending_stress = abs(end_moment_stress) / section_modulus(rod.section)
+    position, axes = solution.frame(rod.name, station)
     return RodQuantities(
         rod=rod.name,
         station=station,
-        position=centre_line_points(rod, station),
+        position=position,
+        axes=axes,
         displacement=solution.displacement(rod.name, station),
         equilibrium=equilibrium,
         stress=stress,
@@ -363,11 +368,6 @@ def rod_quantities(solution: Solution, rod: Rod, applied: AppliedForces, station
         end_moment_stress=end_moment_stress,
         max_bending_stress=max_bending_stress,
     )
-
-
-def section_modulus(rod: Rod) -> float:
-    """W = width height^2 / 6, for bending about e1, mm^3."""
-    return rod.section.width * rod.section.height**2 / 6.0
 
 
 def stress_residual(rod: RodQuantities) -> float:

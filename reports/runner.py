@@ -15,7 +15,8 @@ from dataclasses import dataclass, replace
 from functools import partial
 
 from cases.case import Case
-from reports.case_comparison import case_comparisons, evaluation_points
+from cases.scene import SceneError
+from reports.case_comparison import case_comparisons, comparisons_without_reference, evaluation_points
 from reports.comparison import Comparison, Extrapolation
 from reports.processes import ProcessFailed, Progress, in_own_process
 from reports.quantities import Quantities, evaluate
@@ -52,13 +53,15 @@ class CaseRun:
 
     Attributes
     ----------
-    references : of the 3D reference on three meshes, coarse to fine
+    references : of the 3D reference on three meshes, coarse to fine; none where it cannot treat the scene
+    refusal : then why, in one sentence; else ''
     """
 
     case: Case
     rod: Run
     references: tuple[Run, ...]
     comparisons: tuple[Comparison, ...]
+    refusal: str = ""
 
 
 @dataclass(frozen=True)
@@ -120,7 +123,7 @@ def run_case(case: Case, progress: Progress) -> CaseRun:
     Raises
     ------
     SceneError
-        if either model cannot treat the scene.
+        if the rod model cannot treat the scene.
     """
     import reference3d
 
@@ -128,7 +131,11 @@ def run_case(case: Case, progress: Progress) -> CaseRun:
     rod = run_rod(case, repeats=ROD_REPEATS)
 
     points = evaluation_points(case)
-    solutions = reference3d.solve_sequence(case.scene, lambda done, of: progress(f"3D mesh {done + 1} of {of}"))
+    try:
+        solutions = reference3d.solve_sequence(case.scene, lambda done, of: progress(f"3D mesh {done + 1} of {of}"))
+    except SceneError as error:
+        refusal = str(error)
+        return CaseRun(case, rod, (), comparisons_without_reference(case, rod.quantities, refusal), refusal)
     progress("comparison")
     references = []
     for solution in solutions:
@@ -149,7 +156,7 @@ def run_case(case: Case, progress: Progress) -> CaseRun:
 
 
 def passed(run: CaseRun | Failure) -> bool:
-    """Whether a case ran to its end, both models converged and every comparison passed."""
+    """Whether a case ran to its end, the models converged and every comparison passed."""
     return (
         isinstance(run, CaseRun)
         and all(answer.quantities.converged for answer in (run.rod, *run.references))

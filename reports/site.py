@@ -38,6 +38,7 @@ from reports.truth import independent_values
 HERE = Path(__file__).parent
 
 DEFLECTION_CAPTION = "Below: difference from the 3D of this run on its finest mesh, in micrometres."
+ALONE_CAPTION = "There is no 3D of this run to draw differences from."
 PRESSURE_CAPTION = (
     "At an edge inside the zone the pressure falls like the square root of the distance; at the corner of a bar "
     "it is singular, and no mesh gives its value there."
@@ -162,19 +163,19 @@ def _failed_case(run: Failure, anchor: str) -> dict[str, Any]:
         "counts": {},
         "headline": [[]] * 5,
         "failure": run.reason,
-        "sketch": scene_sketch(run.case.scene),
-        "sketch_caption": _sketch_caption(run.case.scene.contacts),
+        "sketch": "",
+        "sketch_caption": "",
     }
 
 
 def _case(run: CaseRun, anchor: str, picture: DrawnPicture) -> tuple[dict[str, Any], dict[str, Any]]:
     """What the template needs to know of a case, and its figures by the id of their place."""
-    case, finest = run.case, run.references[-1]
+    case = run.case
     truth = None if case.independent is None else independent_values(case.independent, case.scene)
     drawn = [
         (
             "Deflection of the centre lines",
-            DEFLECTION_CAPTION,
+            ALONE_CAPTION if run.refusal else DEFLECTION_CAPTION,
             deflection_figure(run, truth),
         ),
         *(
@@ -195,12 +196,14 @@ def _case(run: CaseRun, anchor: str, picture: DrawnPicture) -> tuple[dict[str, A
     for number_, (heading, caption, figure) in enumerate(drawn, start=1):
         place = f"{anchor}-figure-{number_}"
         figures[place] = _plain(figure)
-        alt = f"{heading} of {case.title}, rod model and 3D; the numbers are in the results beside the page."
+        models = "rod model" if run.refusal else "rod model and 3D"
+        alt = f"{heading} of {case.title}, {models}; the numbers are in the results beside the page."
         height = figure.layout.height
         places.append({"anchor": place, "title": heading, "caption": caption, "alt": alt, "height": height})
     counts: dict[str, int] = dict.fromkeys(("pass", "fail", "not resolved"), 0)
     counts.update(Counter(comparison.verdict for comparison in run.comparisons))
-    warnings = [
+    warnings = [f"The 3D reference cannot treat this case yet. {run.refusal}"] if run.refusal else []
+    warnings += [
         f"{solver} did not converge: {answer.quantities.outcome}"
         for solver, answer in _solvers(run)
         if not answer.quantities.converged
@@ -211,10 +214,10 @@ def _case(run: CaseRun, anchor: str, picture: DrawnPicture) -> tuple[dict[str, A
         "title": case.title,
         "description": case.description,
         "counts": counts,
-        "headline": _headline(run.rod, finest),
+        "headline": _headline(run),
         "failure": "",
         "warnings": warnings,
-        "sketch": scene_sketch(case.scene),
+        "sketch": scene_sketch(case.scene, run.rod.quantities),
         "sketch_caption": _sketch_caption(case.scene.contacts),
         "level": run.rod.level,
         "order": run.rod.order,
@@ -248,22 +251,22 @@ def _solvers(run: CaseRun) -> list[tuple[str, Run]]:
     return [rod, *meshes]
 
 
-def _headline(rod: Run, reference: Run) -> list[list[str]]:
-    """Cells of the table of all cases: a line for the rod model and one for 3D."""
-    answers = (rod, reference)
+def _headline(run: CaseRun) -> list[list[str]]:
+    """Cells of the table of all cases: a line for the rod model and, if there is one, one for 3D."""
+    answers = (run.rod, *run.references[-1:])
 
-    def largest(run: Run) -> float:
-        return max(float(np.linalg.norm(found.displacement, axis=0).max()) for found in run.quantities.rods)
+    def largest(answer: Run) -> float:
+        return max(float(np.linalg.norm(found.displacement, axis=0).max()) for found in answer.quantities.rods)
 
     return [
-        [", ".join(number(contact.force, 5) for contact in run.quantities.contacts) for run in answers],
+        [", ".join(number(contact.force, 5) for contact in answer.quantities.contacts) for answer in answers],
         [
-            "; ".join(stretches(np.ravel(contact.edges).tolist()) for contact in run.quantities.contacts)
-            for run in answers
+            "; ".join(stretches(np.ravel(contact.edges).tolist()) for contact in answer.quantities.contacts)
+            for answer in answers
         ],
-        [number(largest(run), 5) for run in answers],
-        [f"{run.quantities.unknowns:,}".replace(",", " ") for run in answers],
-        [seconds(run.total_seconds) for run in answers],
+        [number(largest(answer), 5) for answer in answers],
+        [f"{answer.quantities.unknowns:,}".replace(",", " ") for answer in answers],
+        [seconds(answer.total_seconds) for answer in answers],
     ]
 
 
@@ -317,7 +320,7 @@ def _cost_row(solver: str, answer: Run) -> dict[str, str]:
 
 def _write_results(run: CaseRun, folder: Path) -> None:
     """Both models' result objects and the comparisons, one JSON file each."""
-    for answer in (run.rod, run.references[-1]):
+    for answer in (run.rod, *run.references[-1:]):
         found = result(run.case.name, answer.model, answer.level, answer.order, answer.quantities, answer.total_seconds)
         write_whole(folder / f"{run.case.name}-{answer.model}.json", found.model_dump_json(indent=1) + "\n")
     comparisons = [

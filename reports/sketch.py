@@ -1,32 +1,58 @@
-"""A side view of a scene as SVG: bars, clamps, loads, candidate zones and the positions that matter, in mm."""
+"""A scene from the side as SVG: rods, clamps, loads, candidate zones and the positions that matter, in mm."""
 
 from __future__ import annotations
+
+from dataclasses import dataclass
 
 import numpy as np
 from markupsafe import Markup, escape
 
-from cases.scene import Rod, Scene
-from reports.geometry import AXES, centre_line_points, frame
+from cases.scene import Load, Rod, Scene, SectionMoment
+from reports.geometry import AXES
+from reports.quantities import Quantities, RodQuantities
+from reports.sections import described, outline
 from reports.solution import Array
+from reports.view import between, load_places, load_text, load_vector, view_plane
 
 MARGIN = 46.0
+# Scenes are drawn this wide, and at most half as high, whatever their size; the text is made for it.
+WIDTH = 500.0
 
 
-def scene_sketch(scene: Scene) -> Markup:
-    """SVG of the scene, seen along -e1 of its first rod: its tangent to the right, its e2 up."""
-    _, up, right = frame(scene.rods[0])
-    plane = np.array([right, up])
-    outlines = [_outline(rod, plane) for rod in scene.rods]
-    points = np.hstack(outlines)
+@dataclass(frozen=True)
+class _Band:
+    """A rod as it is seen: centre, unit tangent and normal along it, shape (2, n), and its border on either side."""
+
+    centre: Array
+    tangent: Array
+    normal: Array
+    left: Array
+    right: Array
+
+    @property
+    def border(self) -> Array:
+        """Corners around the band, shape (2, 2 n)."""
+        return np.hstack([self.centre + self.right * self.normal, (self.centre + self.left * self.normal)[:, ::-1]])
+
+
+def scene_sketch(scene: Scene, quantities: Quantities) -> Markup:
+    """SVG of the scene in the plane of `view_plane`."""
+    plane = view_plane(scene, quantities)
+    across, upwards = np.ptp(plane @ np.hstack([rod.position for rod in quantities.rods]), axis=1)
+    scale = WIDTH / max(float(across), 2.0 * float(upwards))
+    bands = {rod.name: _band(rod, quantities.rod(rod.name), scale * plane) for rod in scene.rods}
+    points = np.hstack([band.border for band in bands.values()])
     low, high = points.min(axis=1), points.max(axis=1)
     base = float(-low[1]) + 12.0
-    parts = [_bar(rod, outline) for rod, outline in zip(scene.rods, outlines, strict=True)]
-    parts += _zones(scene, plane)
-    parts += _clamps(scene, plane)
-    parts += _loads(scene, plane)
-    parts += _positions(scene, plane, base)
-    left, top = low[0] - MARGIN, -high[1] - 48.0
-    width, height = high[0] - low[0] + 2 * MARGIN, base + 30.0 - top
+    parts = [_bar(rod, bands[rod.name]) for rod in scene.rods]
+    parts += _zones(scene, quantities, scale * plane)
+    parts += _clamps(scene, bands)
+    for load in scene.loads:
+        parts += _load(load, scene.rod(load.rod), quantities.rod(load.rod), scale * plane)
+    parts += _positions(scene, quantities, plane, scale, base)
+    spare = max(0.0, WIDTH - float(high[0] - low[0])) / 2.0  # text keeps its size beside a slim scene
+    left, top = low[0] - MARGIN - spare, -high[1] - 48.0
+    width, height = high[0] - low[0] + 2 * (MARGIN + spare), base + 30.0 - top
     label = f"Side view of the scene {scene.name}: " + "; ".join(_described(rod) for rod in scene.rods)
     body = "".join(parts)
     return Markup(
@@ -36,21 +62,27 @@ def scene_sketch(scene: Scene) -> Markup:
 
 
 def _described(rod: Rod) -> str:
-    section, modulus = rod.section, rod.material.young_modulus / 1000.0
-    return f"{rod.name}, E = {modulus:g} GPa, {section.width:g} x {section.height:g} mm, {rod.length:g} mm long"
+    modulus = rod.material.young_modulus / 1000.0
+    return f"{rod.name}, E = {modulus:g} GPa, {described(rod.section)}, {rod.length:g} mm long"
 
 
-def _outline(rod: Rod, plane: Array) -> Array:
-    """Corners of a bar's side in the plane of the drawing, shape (2, 4)."""
-    half = 0.5 * rod.section.height * frame(rod)[1][:, None]
-    start, end = centre_line_points(rod, np.array([0.0, rod.length])).T[:, :, None]
-    outline: Array = plane @ np.hstack([start - half, end - half, end + half, start + half])
-    return outline
+def _band(rod: Rod, found: RodQuantities, plane: Array) -> _Band:
+    """The rod swept by its section's outline, seen in the plane of the drawing."""
+    centre = plane @ found.position
+    tangent = plane @ found.axes[:, 2].T
+    length = np.linalg.norm(tangent, axis=0)
+    # Where the rod is seen end on, any direction will do.
+    end_on = length < 1e-6 * np.linalg.norm(plane[0])
+    tangent = np.where(end_on, [[1.0], [0.0]], tangent / np.where(end_on, 1.0, length))
+    normal = np.array([-tangent[1], tangent[0]])
+    corners = np.einsum("xi,nai,ca->xnc", plane, found.axes[:, :2], outline(rod.section))
+    reach = np.einsum("xnc,xn->nc", corners, normal)
+    return _Band(centre, tangent, normal, reach.max(axis=1), reach.min(axis=1))
 
 
-def _bar(rod: Rod, outline: Array) -> str:
-    corners = " ".join(f"{x:.2f},{-y:.2f}" for x, y in outline.T)
-    x, y = outline.mean(axis=1)
+def _bar(rod: Rod, band: _Band) -> str:
+    corners = " ".join(f"{x:.2f},{-y:.2f}" for x, y in band.border.T)
+    x, y = band.border.mean(axis=1)
     text = f"{rod.name}, E = {rod.material.young_modulus / 1000.0:g} GPa"
     return (
         f'<polygon class="bar" points="{corners}"/>'
@@ -58,28 +90,25 @@ def _bar(rod: Rod, outline: Array) -> str:
     )
 
 
-def _zones(scene: Scene, plane: Array) -> list[str]:
+def _zones(scene: Scene, quantities: Quantities, plane: Array) -> list[str]:
     """A heavy line on the first face along each candidate zone."""
     parts = []
     for pair in scene.contacts:
-        rod = scene.rod(pair.first.rod)
-        first, second, _ = frame(rod)
-        sides = {"top": second, "bottom": -second, "right": first, "left": -first}
-        across = rod.section.height if pair.first.face in ("top", "bottom") else rod.section.width
-        face = centre_line_points(rod, np.array(pair.zone)) + 0.5 * across * sides[pair.first.face][:, None]
-        (x0, x1), (y0, y1) = plane @ face
-        parts.append(f'<line class="zone" x1="{x0:.2f}" y1="{-y0:.2f}" x2="{x1:.2f}" y2="{-y1:.2f}"/>')
+        found = quantities.rod(pair.first.rod)
+        axis, side = {"top": (1, 1.0), "bottom": (1, -1.0), "right": (0, 1.0), "left": (0, -1.0)}[pair.first.face]
+        offset = outline(scene.rod(pair.first.rod).section)[:, axis].max() * side * found.axes[0, axis]
+        start, end = (plane @ (between(found, found.position, np.array(pair.zone)) + offset[:, None])).T
+        parts.append(_line("zone", start, end))
     return parts
 
 
-def _clamps(scene: Scene, plane: Array) -> list[str]:
+def _clamps(scene: Scene, bands: dict[str, _Band]) -> list[str]:
     parts = []
     for clamp in scene.supports:
-        rod = scene.rod(clamp.rod)
-        outward = plane @ frame(rod)[2] * (-1.0 if clamp.end == "start" else 1.0)
-        across = plane @ frame(rod)[1] * 0.9 * rod.section.height
-        end = rod.centre_line.start if clamp.end == "start" else rod.centre_line.end
-        centre = plane @ np.asarray(end)
+        band, index = bands[clamp.rod], 0 if clamp.end == "start" else -1
+        outward = band.tangent[:, index] * (-1.0 if clamp.end == "start" else 1.0)
+        across = 0.9 * (band.left[index] - band.right[index]) * band.normal[:, index]
+        centre = band.centre[:, index]
         for share in np.linspace(-1.0, 1.0, 7):
             foot = centre + share * across
             tip = foot + 6.0 * outward - 4.0 * across / np.linalg.norm(across)
@@ -88,41 +117,78 @@ def _clamps(scene: Scene, plane: Array) -> list[str]:
     return parts
 
 
-def _loads(scene: Scene, plane: Array) -> list[str]:
+def _load(load: Load, rod: Rod, found: RodQuantities, plane: Array) -> list[str]:
+    """Arrows of a load; a turning arrow for a moment; a ringed dot or cross for what points out of or into the page."""
+    vector = load_vector(load)
+    size = float(np.linalg.norm(vector))
+    if size == 0.0:
+        return []
+    vector /= size
+    scale = float(np.linalg.norm(plane[0]))
+    seen = plane @ vector / scale
+    towards = float(np.cross(plane[0], plane[1]) @ vector) / scale**2
+    flat = float(np.linalg.norm(seen))
+    middle = load_places(load, found)
     parts = []
-    for load in scene.loads:
-        rod = scene.rod(load.rod)
-        force = plane @ np.asarray(load.force)
-        size = float(np.linalg.norm(force))
-        if size == 0.0:
-            continue
-        direction = force / size
-        centre = (plane @ centre_line_points(rod, np.array([load.position])))[:, 0]
-        tip = centre - 0.5 * rod.section.height * direction
-        tail = tip - 34.0 * direction
-        side = np.array([-direction[1], direction[0]])
-        head = [tip, tip - 10.0 * direction + 3.6 * side, tip - 10.0 * direction - 3.6 * side]
-        corners = " ".join(f"{x:.2f},{-y:.2f}" for x, y in head)
-        x, y = tail + 9.0 * np.array([1.0, 0.0])
-        parts.append(_line("force", tail, tip - 9.0 * direction))
-        parts.append(f'<polygon class="force-head" points="{corners}"/>')
-        amount = float(np.linalg.norm(load.force))
-        parts.append(f'<text class="load" x="{x:.1f}" y="{-y + 8:.1f}">{amount:g} N</text>')
+    for place in (plane @ middle).T:
+        if isinstance(load, SectionMoment) and abs(towards) > flat:
+            parts += _turning(place, towards > 0.0)
+        elif flat < 1e-6:
+            parts += _end_on(place, towards > 0.0)
+        else:
+            direction = seen / flat
+            nearest = int(np.argmin(np.abs(plane @ found.position - place[:, None]).sum(axis=0)))
+            corners = outline(rod.section) @ found.axes[nearest, :2] @ plane.T
+            tip = place - float((corners @ direction).max()) * direction
+            parts += _arrow(tip, direction, double=isinstance(load, SectionMoment))
+    x, y = (plane @ middle).T[len(middle.T) // 2] - (0.0 if flat < 1e-6 else 41.0 * seen / flat) + np.array([9.0, 0.0])
+    parts.append(f'<text class="load" x="{x:.1f}" y="{-y + 8:.1f}">{load_text(load)}</text>')
     return parts
 
 
-def _positions(scene: Scene, plane: Array, base: float) -> list[str]:
-    """Ticks at rod ends, loads and zone ends, labelled with the global coordinate along the first rod."""
-    rods = scene.rods
-    places = [end for rod in rods for end in centre_line_points(rod, np.array([0.0, rod.length])).T]
-    places += [centre_line_points(scene.rod(load.rod), np.array([load.position]))[:, 0] for load in scene.loads]
-    places += [
-        point
-        for pair in scene.contacts
-        for point in centre_line_points(scene.rod(pair.first.rod), np.array(pair.zone)).T
-    ]
-    axis = int(np.argmax(np.abs(frame(rods[0])[2])))
-    marks = sorted({(round(float((plane @ place)[0]), 6), round(float(place[axis]), 6)) for place in places})
+def _arrow(tip: Array, direction: Array, *, double: bool) -> list[str]:
+    """A straight arrow; with two heads for a moment about its direction."""
+    parts = [_line("force", tip - 34.0 * direction, tip - 9.0 * direction)]
+    side = np.array([-direction[1], direction[0]])
+    for point in (tip, tip - 8.0 * direction)[: 2 if double else 1]:
+        head = [point, point - 10.0 * direction + 3.6 * side, point - 10.0 * direction - 3.6 * side]
+        corners = " ".join(f"{x:.2f},{-y:.2f}" for x, y in head)
+        parts.append(f'<polygon class="force-head" points="{corners}"/>')
+    return parts
+
+
+def _turning(centre: Array, anticlockwise: bool) -> list[str]:
+    """Three quarters of a circle with a head."""
+    sense = 1.0 if anticlockwise else -1.0
+    angle = np.linspace(0.25, 1.6, 25) * np.pi * sense
+    x, y = centre[:, None] + 15.0 * np.array([np.cos(angle), np.sin(angle)])
+    path = " ".join(f"{a:.2f},{-b:.2f}" for a, b in zip(x, y, strict=True))
+    direction = sense * np.array([-np.sin(angle[-1]), np.cos(angle[-1])])
+    head = _arrow(np.array([x[-1], y[-1]]) + 6.0 * direction, direction, double=False)[1:]
+    return [f'<polyline class="force" fill="none" points="{path}"/>', *head]
+
+
+def _end_on(centre: Array, towards: bool) -> list[str]:
+    """A ring with a dot (out of the page) or a cross (into it)."""
+    x, y = centre
+    ring = f'<circle class="force" fill="none" cx="{x:.2f}" cy="{-y:.2f}" r="6"/>'
+    if towards:
+        return [ring, f'<circle class="force-head" cx="{x:.2f}" cy="{-y:.2f}" r="2"/>']
+    arm = 6.0 / np.sqrt(2.0) * np.array([[1.0, 1.0], [1.0, -1.0]])
+    return [ring, *(_line("force", centre - each, centre + each) for each in arm)]
+
+
+def _positions(scene: Scene, quantities: Quantities, plane: Array, scale: float, base: float) -> list[str]:
+    """Ticks at rod ends, loads and zone ends, if the global axis that they are measured along is level in the sketch."""
+    axis = int(np.argmax(np.abs(plane[0])))
+    if abs(plane[0, axis]) < 1.0 - 1e-9:
+        return []
+    places = [rod.position[:, end] for rod in quantities.rods for end in (0, -1)]
+    places += [place for load in scene.loads for place in load_places(load, quantities.rod(load.rod)).T[[0, -1]]]
+    for pair in scene.contacts:
+        found = quantities.rod(pair.first.rod)
+        places += list(between(found, found.position, np.array(pair.zone)).T)
+    marks = sorted({(round(scale * float(plane[0] @ place), 6), round(float(place[axis]), 6)) for place in places})
     first, last = marks[0][0], marks[-1][0]
     parts = [f'<line class="axis" x1="{first}" y1="{base:.1f}" x2="{last}" y2="{base:.1f}"/>']
     for x, label in marks:

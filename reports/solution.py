@@ -97,6 +97,13 @@ class Solution(Protocol):
     @property
     def cost(self) -> Cost: ...
 
+    def frame(self, rod: str, station: Array) -> tuple[Array, Array]:
+        """The undeformed centre line: points, global, mm, shape (3, n), and rows e1, e2, t there, shape (n, 3, 3).
+
+        station : arc length from the rod's start, mm, shape (n,)
+        """
+        ...
+
     def displacement(self, rod: str, station: Array) -> Array:
         """Displacement of the centre line (x = y = 0), global components, mm, shape (3, n).
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 from rich.console import Console
+from rich.markup import escape
 from rich.table import Table
 
 from cases.case import QUANTITIES, Case
@@ -88,9 +89,11 @@ def print_comparison(run: CaseRun | Failure) -> None:
     if isinstance(run, Failure):
         console.print(f"[bold red]failed[/]: {run.reason}\n")
         return
-    for answer in (run.rod, run.references[-1]):
+    for answer in (run.rod, *run.references[-1:]):
         outcome = "" if answer.quantities.converged else f" [bold red]{answer.quantities.outcome}[/]"
         console.print(f"{_model(answer)}: {_cost(answer)}, {answer.peak_memory:.0f} MB{outcome}")
+    if run.refusal:
+        console.print(f"[yellow]The 3D reference cannot treat this case yet[/]: {escape(run.refusal)}")
     table = Table(
         "quantity", "of", "value", "against", "reference", "difference", "uncertainty", "tolerance", "verdict"
     )
@@ -109,5 +112,5 @@ def print_comparison(run: CaseRun | Failure) -> None:
         )
     console.print(table)
     for reason in dict.fromkeys(found.reason for found in run.comparisons if found.reason):
-        console.print(f"not resolved: {reason}")
+        console.print(f"not resolved: {escape(reason)}")
     console.print()

@@ -10,9 +10,8 @@ from typing import Any
 
 import numpy as np
 
-from cases.scene import Rod, Scene
+from cases.scene import Line, Rod, Scene
 from reports.comparison import Estimate
-from reports.geometry import station_of
 from reports.quantities import PressureProfile
 from reports.solution import Array
 
@@ -51,7 +50,7 @@ def independent_values(path: Path, scene: Scene) -> IndependentValues:
     for number, rod in enumerate(scene.rods, start=1):
         if (curve := data.get(f"deflection_bar{number}_mm")) is not None:
             position, deflection = np.array(curve, dtype=float)
-            stations[rod.name] = _stations(rod, position)
+            stations[rod.name] = _stations(rod, position, path)
             uncertainty = doubt["deflection_relative"] * float(np.abs(deflection).max())
             estimates["deflection", rod.name] = Estimate(deflection, uncertainty)
     if scene.contacts and "contact_force_N" in data:
@@ -69,8 +68,9 @@ def independent_values(path: Path, scene: Scene) -> IndependentValues:
     return IndependentValues(estimates, stations, pressure)
 
 
-def _stations(rod: Rod, position: Array) -> Array:
+def _stations(rod: Rod, position: Array, path: Path) -> Array:
     """Arc lengths of the points of a rod along X whose X is given, mm."""
-    points = np.repeat(np.asarray(rod.centre_line.start, dtype=float)[:, None], len(position), axis=1)
-    points[0] = position
-    return station_of(rod, points)
+    line = rod.centre_line
+    if not isinstance(line, Line) or line.start[1:] != line.end[1:]:
+        raise ValueError(f"{path.name} holds values along X, but the centre line of rod '{rod.name}' is not along X")
+    return np.abs(position - line.start[0])

@@ -88,6 +88,12 @@ class BeamSolution:
     def _from_clamp(self, rod: str, station: Array) -> Array:
         return station if self._clamp(rod) == "start" else self.scene.rod(rod).length - station
 
+    def frame(self, rod: str, station: Array) -> tuple[Array, Array]:
+        """Both rods lie along X with e2 = Y, so that e1 = e2 x t = -Z."""
+        start = np.array(self.scene.rod(rod).centre_line.start)
+        axes = np.array([[0.0, 0.0, -1.0], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0]])
+        return start[:, None] + np.outer(axes[2], station), np.tile(axes, (len(station), 1, 1))
+
     def displacement(self, rod: str, station: Array) -> Array:
         s = self._from_clamp(rod, station)[:, None]
         a, force = self._forces(rod)

@@ -18,7 +18,7 @@ ROUND_OFF = 1e-9
 
 def residual(solution: Solution) -> float:
     return equilibrium_residual(
-        solution.scene, {rod.name: applied_forces(solution, rod) for rod in solution.scene.rods}
+        solution.scene, {rod.name: applied_forces(solution, rod, default_stations(rod)) for rod in solution.scene.rods}
     )
 
 
@@ -150,6 +150,10 @@ class HeldBothEnds:
         clamps = (Clamp("beam", "start"), Clamp("beam", "end"))
         self.scene = Scene("held", (rod,), clamps, (SectionForce("beam", 100.0, (0.0, -80.0, 0.0)),), ())
 
+    def frame(self, rod: str, station: Array) -> tuple[Array, Array]:
+        axes = np.array([[0.0, 0.0, -1.0], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0]])
+        return np.outer(axes[2], station), np.tile(axes, (len(station), 1, 1))
+
     def reaction(self, rod: str, end: str) -> Array:
         return np.array([0.0, 40.0, 0.0, 0.0, 0.0, 2000.0 if end == "start" else -2000.0])
 
@@ -159,7 +163,7 @@ def test_a_rod_held_at_both_ends_takes_the_reaction_into_its_equilibrium() -> No
 
     beam = solution.scene.rods[0]
     station = np.array([0.0, 50.0, 100.0, 200.0])
-    moment = equilibrium_resultants(solution.scene, beam, applied_forces(solution, beam), station)[3]
+    moment = equilibrium_resultants(solution, beam, applied_forces(solution, beam, station), station)[3]
 
     # M1 > 0 where the top is in tension: + P L / 8 at both clamps, - P L / 8 under the load, 0 half way
     assert moment == pytest.approx([2000.0, 0.0, -2000.0, 2000.0], abs=ROUND_OFF * 2000.0)
@@ -180,11 +184,15 @@ def test_all_six_resultants_of_a_tip_force_in_local_components() -> None:
     class Held:
         scene = Scene("post", (rod,), (Clamp("post", "start"),), (tip,), ())
 
+        def frame(self, rod: str, station: Array) -> tuple[Array, Array]:
+            axes = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
+            return np.array([[1.0], [2.0], [3.0]]) + np.outer(axes[2], station), np.tile(axes, (len(station), 1, 1))
+
         def reaction(self, rod: str, end: str) -> Array:
             return np.array([-3.0, -5.0, -7.0, 500.0, -300.0, 0.0])
 
     station = np.array([0.0, 40.0, 100.0])
-    resultants = equilibrium_resultants(Held.scene, rod, applied_forces(Held(), rod), station)
+    resultants = equilibrium_resultants(Held(), rod, applied_forces(Held(), rod, station), station)
 
     axial, shear_1, shear_2, moment_1, moment_2, torque = resultants
     assert axial == pytest.approx([7.0, 7.0, 7.0])
