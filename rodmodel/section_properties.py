@@ -38,8 +38,9 @@ class SectionProperties:
     section_moduli : W_1 = I_1 / (greatest distance from axis 1) and W_2 likewise, mm^3
     polar_moment : I_p = I_x + I_y, mm^4
     torsion_constant : J, torque = G J (rate of twist), mm^4; not below the exact one
-    shear_centre : (x, y), Trefftz's: the point about which the section twists without a moment of warping, mm.
-        It does not depend on Poisson's ratio (Timoshenko's does, a little, on solid sections).
+    shear_centre : (x, y), mm, Trefftz's (ZAMM 15, 1935, 220-225): twisted about this point the section warps without
+        moments, int w x dA = int w y dA = 0. A force through it does not twist the rod if Poisson's ratio is zero;
+        otherwise it does, a little, where the section is solid.
     """
 
     area: float
@@ -56,6 +57,10 @@ class SectionProperties:
 
 def section_properties(section: Section, level: int = 12) -> SectionProperties:
     """Properties of a section, torsion and shear centre with warping functions of degree up to `level`.
+
+    At level 12 the torsion constant is exact for circles and rings, 6e-6 too great for rectangles up to 2:1 and 6e-5
+    at 10:1. Thin open walls come slowly, each wanting a warping of its own: with walls of a tenth of the width, an
+    angle is 4 % too stiff and a channel 14 %.
 
     Raises
     ------
@@ -113,7 +118,7 @@ def _greatest_distances(section: Section, angle: float) -> tuple[float, float]:
 def _torsion(section: Section, level: int) -> tuple[float, float, float]:
     """J = min over w of int (w_x - y)^2 + (w_y + x)^2 dA, and int w y dA, int w x dA of the minimiser.
 
-    Timoshenko and Goodier, Theory of Elasticity, 1970, article 109 (w is their psi). As a least-squares problem, since
+    Timoshenko and Goodier, Theory of Elasticity, 1970, article 104 (w is their psi). As a least-squares problem, since
     the difference of I_p and the energy of w would cancel where walls are open and thin.
     """
     x, y, weight = section_quadrature(section, 2 * level)
