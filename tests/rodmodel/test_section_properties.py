@@ -248,7 +248,7 @@ def test_the_shear_centre_of_symmetric_sections_is_the_centroid(section: Section
 
 @pytest.mark.parametrize("wall", [1.0, 0.5, 0.25, 0.1])
 def test_the_shear_centre_of_a_channel_nears_thin_walled_theory(wall: float) -> None:
-    """e = b^2 h^2 t / (4 I_x) from the web's middle, away from the flanges; Gere and Timoshenko, Mechanics of Materials."""
+    """e = b^2 h^2 t / (4 I_x) from the web's middle, away from the flanges; Gere and Timoshenko, Mechanics."""
     section = channel(10.0, 20.0, wall)
     b, h = 10.0 - wall / 2.0, 20.0 - wall
     i_x = wall * h**3 / 12.0 + 2.0 * b * wall * (h / 2.0) ** 2
