@@ -8,9 +8,8 @@ from __future__ import annotations
 from functools import lru_cache
 
 import numpy as np
-from numpy.polynomial.legendre import leggauss
+from numpy.polynomial.legendre import legder, leggauss, legroots
 from numpy.typing import NDArray
-from scipy.special import roots_jacobi
 
 Array = NDArray[np.float64]
 
@@ -92,8 +91,11 @@ def lobatto(count: int) -> tuple[Array, Array]:
 
     Weights 2 / (n (n - 1) P_{n-1}^2); Abramowitz and Stegun 25.4.32.
     """
-    inner, _ = roots_jacobi(count - 2, 1.0, 1.0)
-    xi = np.concatenate([[-1.0], inner, [1.0]])
+    inner = legroots(legder(np.eye(count)[count - 1]))
+    # One Newton step on P' takes the eigenvalues to round-off: P'' = (2 xi P' - n (n - 1) P) / (1 - xi^2).
+    value, slope = legendre(count - 1, inner)[-1], legendre_derivatives(count - 1, inner)[-1]
+    inner = inner - slope * (1.0 - inner**2) / (2.0 * inner * slope - count * (count - 1) * value)
+    xi = np.concatenate([[-1.0], 0.5 * (inner - inner[::-1]), [1.0]])
     weight = 2.0 / (count * (count - 1) * legendre(count - 1, xi)[-1] ** 2)
     xi.flags.writeable = weight.flags.writeable = False
     return xi, weight

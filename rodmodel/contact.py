@@ -9,7 +9,6 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import cho_factor, cho_solve, cholesky, solve_triangular
-from scipy.optimize import nnls
 
 Array = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
@@ -46,6 +45,9 @@ def unilateral_contact(compliance: Array, gap: Array, spring: Array) -> Array:
     """
     if len(gap) == 0:
         return np.empty(0)
+    # Importing it takes longer than importing all of this package, and only scenes with contact need it.
+    from scipy.optimize import nnls
+
     factor = cholesky(compliance + np.diag(1.0 / spring), lower=True, check_finite=False)
     force, _ = nnls(factor.T, -solve_triangular(factor, gap, lower=True, check_finite=False))
     # Least squares on the factor loses digits to the factor's own condition; its set of points in contact does not.

@@ -13,7 +13,6 @@ from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.interpolate import BarycentricInterpolator
 
 from cases.scene import Scene
 from rodmodel.borders import Edge
@@ -200,7 +199,9 @@ def _interpolated_root(positions: Sequence[Array], values: Sequence[Array]) -> A
     value = np.concatenate(values)
     if len(np.unique(value)) < len(value):
         return positions[-1]
-    return np.atleast_1d(BarycentricInterpolator(value, np.concatenate(positions))(0.0))
+    # Lagrange's formula at zero.
+    weights = [np.prod(others / (others - own)) for own, others in ((v, value[value != v]) for v in value)]
+    return np.atleast_1d(np.dot(weights, np.concatenate(positions)))
 
 
 @dataclass(frozen=True)

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.polynomial import Legendre
 from numpy.typing import NDArray
-from scipy.interpolate import BarycentricInterpolator
 
 from cases.scene import ContactPair, Scene
 from rodmodel.centre_line import global_points
@@ -52,7 +52,8 @@ def pressure_profile(scene: Scene, pair: ContactPair, grid: ContactGrid, force: 
         closed = bool((lines[:, index, 1:-1] > 0.0).all())
         drawn = np.linspace(station[0], station[-1], DRAWN) if closed else station
         if closed:
-            drawn_values = np.maximum(BarycentricInterpolator(station, lines[:, index].T)(drawn).T, 0.0)
+            fitted = [Legendre.fit(station, line, len(station) - 1)(drawn) for line in lines[:, index]]
+            drawn_values = np.maximum(fitted, 0.0)
         else:
             drawn_values = lines[:, index]
         first = 0 if index == 0 else 1
