@@ -94,14 +94,9 @@ def case_comparisons(
     return (*found, *_against_published(case, rod))
 
 
-def comparisons_without_reference(case: Case, rod: Quantities, refusal: str) -> tuple[Comparison, ...]:
-    """All comparisons of a case whose scene the 3D reference cannot treat, in the order of `case_comparisons`.
-
-    Parameters
-    ----------
-    refusal : why it cannot, in one sentence
-    """
-    reason = f"the 3D reference cannot treat this case yet: {refusal}"
+def comparisons_without_reference(case: Case, rod: Quantities) -> tuple[Comparison, ...]:
+    """All comparisons of a case whose scene the 3D reference cannot treat, in the order of `case_comparisons`."""
+    reason = "the 3D reference cannot treat this case yet"
     found = [
         untreated(check, extract(rod, check), reason, kind="reference", source=REFERENCE_SOURCE)
         for check in case.compare

@@ -31,7 +31,7 @@ _POINTS = {"symbol": "circle-open", "size": 6, "color": TRUTH, "line": {"width":
 
 
 def deflection_figure(run: CaseRun, truth: IndependentValues | None) -> go.Figure:
-    """Transverse deflection of every rod, and below it how far the others are from the 3D reference, if there is one."""
+    """Transverse deflection of every rod and, where there is a 3D reference, how far the others are from it below."""
     rods, rows = run.case.scene.rods, 2 if run.references else 1
     figure = _panels([rod.name for rod in rods], rows)
     for column, rod in enumerate(rods, start=1):

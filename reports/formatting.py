@@ -47,6 +47,11 @@ def values(quantity: Quantity, numbers: Sequence[float]) -> str:
     return ", ".join(number(value, 5) for value in numbers) or NOTHING
 
 
+def values_with_unit(quantity: Quantity, numbers: Sequence[float]) -> str:
+    """The numbers of a comparison with their unit; 'none' where there are none."""
+    return f"{values(quantity, numbers)} {QUANTITIES[quantity].unit}" if numbers else NOTHING
+
+
 def measure(quantity: Quantity, value: float | None) -> str:
     """A difference, uncertainty or tolerance with its unit: in per cent where the quantity's are relative."""
     if value is None:

@@ -151,9 +151,7 @@ def draw(scene: Scene, quantities: Quantities) -> Picture:
     plotter.view_vector(np.cross(right, up) + 0.30 * up - 0.10 * right, viewup=up)
     plotter.reset_camera()
     high = float(np.ptp(up @ np.hstack([rod.position for rod in quantities.rods])))
-    plotter.camera.parallel_scale = 0.5 * max(
-        1.15 * size * SIZE[1] / SIZE[0], 1.3 * high + 0.35 * size * (high > 0.2 * size)
-    )
+    plotter.camera.parallel_scale = 0.5 * max(1.15 * size * SIZE[1] / SIZE[0], 1.3 * high + 0.35 * size)
     plotter.camera.focal_point = np.asarray(plotter.camera.focal_point) + lowered
     plotter.camera.position = np.asarray(plotter.camera.position) + lowered
     stream = io.BytesIO()

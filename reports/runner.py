@@ -134,8 +134,7 @@ def run_case(case: Case, progress: Progress) -> CaseRun:
     try:
         solutions = reference3d.solve_sequence(case.scene, lambda done, of: progress(f"3D mesh {done + 1} of {of}"))
     except SceneError as error:
-        refusal = str(error)
-        return CaseRun(case, rod, (), comparisons_without_reference(case, rod.quantities, refusal), refusal)
+        return CaseRun(case, rod, (), comparisons_without_reference(case, rod.quantities), str(error))
     progress("comparison")
     references = []
     for solution in solutions:

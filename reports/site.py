@@ -23,10 +23,9 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined, select_autoes
 from markupsafe import Markup
 from plotly.offline import get_plotlyjs
 
-from cases.case import QUANTITIES
 from reports.comparison import Comparison, Verdict
 from reports.figures import deflection_figure, moment_figure, pressure_figure
-from reports.formatting import MODEL_NAMES, measure, number, seconds, stretches, title, values
+from reports.formatting import MODEL_NAMES, measure, number, seconds, stretches, title, values_with_unit
 from reports.processes import ProcessFailed, Progress, in_own_process
 from reports.quantities import DEFINITIONS
 from reports.result import result
@@ -271,13 +270,12 @@ def _headline(run: CaseRun) -> list[list[str]]:
 
 
 def _row(found: Comparison) -> dict[str, str]:
-    unit = QUANTITIES[found.quantity].unit
     certain = found.kind == "published"
     return {
         "title": title(found),
         "definition": DEFINITIONS[found.quantity].text,
-        "value": f"{values(found.quantity, found.value)} {unit}",
-        "reference": f"{values(found.quantity, found.reference)} {unit}",
+        "value": values_with_unit(found.quantity, found.value),
+        "reference": values_with_unit(found.quantity, found.reference),
         "difference": measure(found.quantity, found.difference),
         "uncertainty": "as printed" if certain else measure(found.quantity, found.uncertainty),
         "tolerance": measure(found.quantity, found.tolerance),

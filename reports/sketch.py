@@ -179,7 +179,7 @@ def _end_on(centre: Array, towards: bool) -> list[str]:
 
 
 def _positions(scene: Scene, quantities: Quantities, plane: Array, scale: float, base: float) -> list[str]:
-    """Ticks at rod ends, loads and zone ends, if the global axis that they are measured along is level in the sketch."""
+    """Ticks at rod ends, loads and zone ends, where the sketch shows a global axis level."""
     axis = int(np.argmax(np.abs(plane[0])))
     if abs(plane[0, axis]) < 1.0 - 1e-9:
         return []

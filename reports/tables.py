@@ -7,7 +7,7 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
-from cases.case import QUANTITIES, Case
+from cases.case import Case
 from reports.comparison import Verdict
 from reports.formatting import (
     KIND_NAMES,
@@ -17,7 +17,7 @@ from reports.formatting import (
     seconds,
     stretches,
     title,
-    values,
+    values_with_unit,
 )
 from reports.runner import CaseRun, Failure, Run
 
@@ -98,13 +98,12 @@ def print_comparison(run: CaseRun | Failure) -> None:
         "quantity", "of", "value", "against", "reference", "difference", "uncertainty", "tolerance", "verdict"
     )
     for found in run.comparisons:
-        unit = QUANTITIES[found.quantity].unit
         table.add_row(
             title(found),
             MODEL_NAMES[found.model],
-            f"{values(found.quantity, found.value)} {unit}",
+            values_with_unit(found.quantity, found.value),
             KIND_NAMES[found.kind],
-            f"{values(found.quantity, found.reference)} {unit}",
+            values_with_unit(found.quantity, found.reference),
             measure(found.quantity, found.difference),
             "as printed" if found.kind == "published" else measure(found.quantity, found.uncertainty),
             measure(found.quantity, found.tolerance),
