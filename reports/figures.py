@@ -102,17 +102,22 @@ def pressure_figure(run: CaseRun, pair: str, truth: IndependentValues | None) ->
 
 
 def moment_figure(run: CaseRun) -> go.Figure:
-    """Bending moment of every rod from equilibrium and, below, how far the moment from stress is from it."""
+    """Bending moment of every rod from equilibrium and, below, how far the moment from stress is from it.
+
+    Of M1 and M2 it is the one that is larger in the rod.
+    """
     rods = run.case.scene.rods
     figure = _panels([rod.name for rod in rods], rows=2)
     for column, rod in enumerate(rods, start=1):
+        largest = np.abs(run.rod.quantities.rod(rod.name).equilibrium[3:5]).max(axis=1)
+        row = 4 if largest[1] > largest[0] else 3
         for name, answer in _answers(run):
             found = answer.quantities.rod(rod.name)
-            moment = found.moment / 1000.0
+            moment = found.equilibrium[row] / 1000.0
             axis, x = _along(found)
             _add_line(figure, name, x, moment, 1, column, legend=column == 1)
-            _add_line(figure, name, x, found.stress[3] / 1000.0 - moment, 2, column, legend=False)
-        figure.update_yaxes(title_text="M<sub>1</sub>, kN mm", row=1, col=column)
+            _add_line(figure, name, x, found.stress[row] / 1000.0 - moment, 2, column, legend=False)
+        figure.update_yaxes(title_text=f"M<sub>{row - 2}</sub>, kN mm", row=1, col=column)
         figure.update_yaxes(title_text="difference, kN mm", row=2, col=column)
         figure.update_xaxes(title_text=f"{axis}, mm", row=2, col=column)
         margin = 0.03 * rod.length

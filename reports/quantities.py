@@ -289,14 +289,14 @@ def _require_finite(quantities: Quantities) -> None:
 
 
 def default_stations(rod: Rod) -> Array:
-    """60 even steps (24 a turn of a helix of many), both ends, and the element borders, mm, ascending."""
+    """60 even steps (48 a turn of a helix of many), both ends, and the element borders, mm, ascending."""
     return merged_stations(rod, np.empty(0))
 
 
 def merged_stations(rod: Rod, extra: Array) -> Array:
     """`default_stations` and further ones, those closer than 1e-9 of the length merged."""
     turns = rod.centre_line.angle / (2.0 * math.pi) if isinstance(rod.centre_line, Helix) else 0.0
-    even = np.linspace(0.0, rod.length, 1 + max(60, math.ceil(24.0 * turns)))
+    even = np.linspace(0.0, rod.length, 1 + max(60, math.ceil(48.0 * turns)))
     station = np.sort(np.concatenate([even, rod.element_borders, extra]))
     station = np.clip(station, 0.0, rod.length)
     keep = np.concatenate([[True], np.diff(station) > 1e-9 * rod.length])

@@ -17,6 +17,9 @@ from reports.view import between, load_places, load_text, load_vector, view_plan
 MARGIN = 46.0
 # Scenes are drawn this wide, and at most half as high, whatever their size; the text is made for it.
 WIDTH = 500.0
+ARROW = 34.0
+# An arrow whose part in the plane of the drawing is less than this of its length is drawn end on.
+END_ON = 0.3
 
 
 @dataclass(frozen=True)
@@ -43,6 +46,9 @@ def scene_sketch(scene: Scene, quantities: Quantities) -> Markup:
     bands = {rod.name: _band(rod, quantities.rod(rod.name), scale * plane) for rod in scene.rods}
     points = np.hstack([band.border for band in bands.values()])
     low, high = points.min(axis=1), points.max(axis=1)
+    for load in scene.loads:
+        tails = _tails(load, quantities.rod(load.rod), outline(scene.rod(load.rod).section), scale * plane)
+        low[1] = min(low[1], tails[1].min())
     base = float(-low[1]) + 12.0
     parts = [_bar(rod, bands[rod.name]) for rod in scene.rods]
     parts += _zones(scene, quantities, scale * plane)
@@ -133,22 +139,41 @@ def _load(load: Load, rod: Rod, found: RodQuantities, plane: Array) -> list[str]
     for place in (plane @ middle).T:
         if isinstance(load, SectionMoment) and abs(towards) > flat:
             parts += _turning(place, towards > 0.0)
-        elif flat < 1e-6:
+        elif flat < END_ON:
             parts += _end_on(place, towards > 0.0)
         else:
             direction = seen / flat
-            nearest = int(np.argmin(np.abs(plane @ found.position - place[:, None]).sum(axis=0)))
-            corners = outline(rod.section) @ found.axes[nearest, :2] @ plane.T
-            tip = place - float((corners @ direction).max()) * direction
+            reach = float(_reach(found, outline(rod.section), plane, place[:, None], direction)[0])
+            tip = place - reach * direction
             parts += _arrow(tip, direction, double=isinstance(load, SectionMoment))
-    x, y = (plane @ middle).T[len(middle.T) // 2] - (0.0 if flat < 1e-6 else 41.0 * seen / flat) + np.array([9.0, 0.0])
-    parts.append(f'<text class="load" x="{x:.1f}" y="{-y + 8:.1f}">{load_text(load)}</text>')
+    x, y = _tails(load, found, outline(rod.section), plane)[:, len(middle.T) // 2]
+    x, y = (x, y + 6.0) if flat >= END_ON and abs(seen[0]) > abs(seen[1]) else (x + 9.0, y - 8.0)
+    parts.append(f'<text class="load" x="{x:.1f}" y="{-y:.1f}">{load_text(load)}</text>')
     return parts
+
+
+def _tails(load: Load, found: RodQuantities, corners: Array, plane: Array) -> Array:
+    """Where the arrows of a load begin; at its places where it is drawn end on; shape (2, n)."""
+    places = plane @ load_places(load, found)
+    seen = plane @ load_vector(load)
+    flat = float(np.linalg.norm(seen))
+    if flat < END_ON * float(np.linalg.norm(load_vector(load)) * np.linalg.norm(plane[0])) or flat == 0.0:
+        return places
+    return places - np.outer(seen / flat, _reach(found, corners, plane, places, seen / flat) + ARROW)
+
+
+def _reach(found: RodQuantities, corners: Array, plane: Array, places: Array, direction: Array) -> Array:
+    """How far the rod's sections at some places reach along a direction of the drawing, shape (n,)."""
+    centre = plane @ found.position
+    nearest = np.abs(centre[:, None, :] - places[:, :, None]).sum(axis=0).argmin(axis=1)
+    offsets = np.einsum("xi,nai,ca->xnc", plane, found.axes[nearest][:, :2], corners)
+    reach: Array = np.einsum("xnc,x->nc", offsets, direction).max(axis=1)
+    return reach
 
 
 def _arrow(tip: Array, direction: Array, *, double: bool) -> list[str]:
     """A straight arrow; with two heads for a moment about its direction."""
-    parts = [_line("force", tip - 34.0 * direction, tip - 9.0 * direction)]
+    parts = [_line("force", tip - ARROW * direction, tip - 9.0 * direction)]
     side = np.array([-direction[1], direction[0]])
     for point in (tip, tip - 8.0 * direction)[: 2 if double else 1]:
         head = [point, point - 10.0 * direction + 3.6 * side, point - 10.0 * direction - 3.6 * side]
