@@ -35,6 +35,8 @@ LARGEST_POISSON_RATIO = 0.4999
 # difference between the gap that a contact force implies and that of the faces, of the largest displacement
 RESIDUAL_TOLERANCE = 1e-8
 GAP_TOLERANCE = 1e-6
+# energy in the contact springs, as a part of the strain energy, above which the penalty falsifies the answer
+PENALTY_SHARE = 1e-3
 
 
 def solve(scene: Scene, refinement: int = DEFAULT_REFINEMENT, located: Solution | None = None) -> Solution:
@@ -217,15 +219,18 @@ def _collect(
             [_support_reaction(scene, body, out_of_balance.reshape(shape), symmetric, end) for end in (0, -1)]
         )
         rods[name] = RodResult(body.rod, mirrored(field) if symmetric else field, reaction)
-    pairs, mismatch = {}, 0.0
+    pairs, mismatch, penetrating = {}, 0.0, 0.0
     for pair, grid, force, gap in zip(scene.contacts, nodes, forces, gaps, strict=True):
         pairs[pair.name] = _pair_result(pair, grid, force, gap, symmetric)
         implied = -force / (pair.penalty * grid.area.ravel())
         mismatch = max(mismatch, float(np.abs(gap - implied)[force > 0.0].max(initial=0.0)))
+        penetrating -= (2.0 if symmetric else 1.0) * 0.5 * float(force @ implied)
     if outcome == "converged" and residual > RESIDUAL_TOLERANCE:
         outcome = f"refused: forces are out of balance by {residual:.1e} of the largest"
     if outcome == "converged" and mismatch > GAP_TOLERANCE * moved:
         outcome = f"refused: contact forces and displacements disagree by {mismatch:.1e} mm"
+    if outcome == "converged" and penetrating > PENALTY_SHARE * energy:
+        outcome = f"refused: the penalty is too soft, penetration holds {penetrating / energy:.2g} of the strain energy"
     begin, ready = moments
     return Solution(
         scene=scene,

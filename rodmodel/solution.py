@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cases.scene import End, Rod, Scene, Section
-from rodmodel.assembly import AssembledRod, compliance
+from rodmodel.assembly import AssembledRod
 from rodmodel.axial import shape_function_slopes, shape_functions
 from rodmodel.centre_line import centre_points, darboux, frames, global_points
 from rodmodel.edges import Stretch
@@ -73,12 +73,13 @@ class Solution:
     Attributes
     ----------
     scene : what was solved
-    outcome : 'converged', or why not
+    outcome : 'converged', 'stagnated: ...' or 'refused: ...'
     contact_solutions : contact solutions spent, one a set of border positions
     stretches : parts of the zones found in contact, with the borders that ended on their edges
     system : rods and contact points on the final borders
     force : at every contact point of the system, N
     coefficients : by rod name, degrees of freedom of every element, shape (order + 1, n_fields) each
+    strain_energy : of all rods, half the work of loads and contact forces on the final state, N mm
     cost : unknowns and seconds
     """
 
@@ -89,13 +90,8 @@ class Solution:
     system: ContactSystem
     force: Array
     coefficients: Mapping[str, tuple[Array, ...]]
+    strain_energy: float
     cost: Cost
-
-    @property
-    def strain_energy(self) -> float:
-        """Elastic energy of all rods, half the work of loads and contact forces on the final state, N mm."""
-        loads = [self.system.total_load(rod.name, self.force) for rod in self.scene.rods]
-        return 0.5 * sum(float(compliance(load)[0, 0]) for load in loads)
 
     def frame(self, rod: str, station: Array) -> tuple[Array, Array]:
         """Points of the centre line, global, mm, shape (3, n), and frames there, rows e1, e2, t, shape (n, 3, 3)."""

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cases.scene import Rod, Scene, SceneError
-from rodmodel.assembly import ElementStore, coefficients
+from rodmodel.assembly import ElementStore, coefficients, compliance
 from rodmodel.borders import Edge, border_plan, natural_mesh, placed_meshes
 from rodmodel.contact import unilateral_contact
 from rodmodel.edges import EdgeSearch, Stretch, find_edges, moved, moving_edges, same_topology, stretches_in_contact
@@ -26,6 +26,8 @@ Grades = int | Mapping[str, Sequence[int]]
 # Makes the contact system on given meshes, with points in all zones or in parts of them.
 SystemOn = Callable[[dict[str, RodMesh], dict[str, Array] | None], ContactSystem]
 
+# Energy in the contact springs, as a part of the strain energy, above which the penalty falsifies the answer.
+PENALTY_SHARE = 1e-3
 # How often the search may start anew because stretches appeared, merged or vanished.
 MOST_TOPOLOGIES = 3
 
@@ -61,22 +63,31 @@ def solve(scene: Scene, level: Grades = 5, order: Grades = 6) -> Solution:
     system = system_on(natural)
     ready = time.perf_counter()
     contact = moved_contact(scene, natural, system, system_on)
-    values = {
-        name: coefficients(assembled, contact.system.total_load(name, contact.force))
-        for name, assembled in contact.system.rods.items()
-    }
+    loads = {name: contact.system.total_load(name, contact.force) for name in contact.system.rods}
+    values = {name: coefficients(contact.system.rods[name], load) for name, load in loads.items()}
+    energy = 0.5 * sum(float(compliance(load)[0, 0]) for load in loads.values())
     unknowns = sum(assembled.unknowns for assembled in contact.system.rods.values())
     cost = Cost(unknowns, ready - begin, time.perf_counter() - ready)
     return Solution(
         scene,
-        contact.outcome,
+        _judged(contact, energy),
         contact.solutions,
         contact.stretches,
         contact.system,
         contact.force,
         values,
+        energy,
         cost,
     )
+
+
+def _judged(contact: MovedContact, strain_energy: float) -> str:
+    """The contact's outcome, unless what the penalty springs hold says that they are too soft to stand for contact."""
+    penetrating = 0.5 * float(np.sum(contact.force**2 / contact.system.spring))
+    if contact.outcome == "converged" and penetrating > PENALTY_SHARE * strain_energy:
+        share = penetrating / strain_energy
+        return f"refused: the penalty is too soft, penetration holds {share:.2g} of the strain energy"
+    return contact.outcome
 
 
 def _grades_of(grades: Grades, rod: Rod) -> int | Sequence[int]:

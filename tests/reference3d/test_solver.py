@@ -220,6 +220,11 @@ def test_contact_forces_that_do_not_fit_the_displacements_are_refused(two_cantil
     assert outcome.startswith("refused: contact forces and displacements disagree by")
 
 
+def test_a_penalty_that_changes_the_answer_is_refused(two_cantilevers):
+    """At 20 N/mm^3 the springs of contact hold half a percent of the energy, and the force is off by one."""
+    assert solve(two_cantilevers(50000.0, 0.0, penalty=20.0), 1).outcome.startswith("refused: the penalty is too soft")
+
+
 def test_a_gap_that_does_not_close_leaves_the_rods_alone(two_cantilevers):
     solution = solve(two_cantilevers(50000.0, 50.0))
 

@@ -124,6 +124,14 @@ def test_a_softer_penalty_moves_the_force_less_than_the_edge() -> None:
     assert found[0][1] - found[1][1] > 0.5
 
 
+def test_a_penalty_that_changes_the_answer_is_refused() -> None:
+    """At 20 N/mm^3 the springs of contact give way by a tenth of a millimetre, and the force is off by percents."""
+    case = PAPER["e50-g0"]
+    pair = replace(case.scene.contacts[0], penalty=20.0)
+    solution = rm.solve(replace(case.scene, contacts=(pair,)))
+    assert solution.outcome.startswith("refused: the penalty is too soft")
+
+
 def test_bars_that_do_not_meet_touch_nowhere() -> None:
     case = PAPER["e50-g0"]
     pair = replace(case.scene.contacts[0], gap=50.0)
