@@ -40,15 +40,17 @@ def rod_mesh(rod: Rod, level: int | Sequence[int], order: int | Sequence[int]) -
     Raises
     ------
     ValueError
-        if there is not one for each.
+        if there is not one for each, or one is too low.
     """
     count = len(rod.element_borders) - 1
     numbers = []
-    for name, given in (("level", level), ("order", order)):
-        each = [given] * count if isinstance(given, int) else list(given)
+    for name, given, least in (("level", level, 1), ("order", order, 2)):
+        each = np.full(count, given) if np.ndim(given) == 0 else np.array(given)
         if len(each) != count:
             raise ValueError(f"{name}: found {len(each)} for rod '{rod.name}', which has {count} elements")
-        numbers.append(np.array(each, dtype=np.int64))
+        if each.dtype.kind != "i" or each.min() < least:
+            raise ValueError(f"{name}: found {given}; whole numbers of at least {least} are needed")
+        numbers.append(each.astype(np.int64))
     return RodMesh(np.array(rod.element_borders), *numbers)
 
 

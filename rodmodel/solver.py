@@ -45,12 +45,13 @@ def solve(scene: Scene, level: Grades = 5, order: Grades = 6) -> Solution:
     SceneError
         if a rod is not held by any support.
     ValueError
-        if there is not one level or order for each element.
+        if a level is below 1 or an order below 2, or there is not one for each element.
     """
-    for index, rod in enumerate(scene.rods):
+    for rod in scene.rods:
         if not any(support.rod == rod.name for support in scene.supports):
+            found = f"no clamp on rod '{rod.name}'"
             raise SceneError(
-                "supports", f"none on rods[{index}] '{rod.name}'", "a rod must be clamped at one end at least"
+                "supports", found, "the rod model needs a clamp on every rod, or its stiffness is singular"
             )
     begin = time.perf_counter()
     mirrors = scene_mirrors(scene)
@@ -91,7 +92,11 @@ def _judged(contact: MovedContact, strain_energy: float) -> str:
 
 
 def _grades_of(grades: Grades, rod: Rod) -> int | Sequence[int]:
-    return grades if isinstance(grades, int) else grades[rod.name]
+    if not isinstance(grades, Mapping):
+        return grades
+    if rod.name not in grades:
+        raise ValueError(f"level or order: found none for rod '{rod.name}'; give every rod one for each element")
+    return grades[rod.name]
 
 
 @dataclass(frozen=True, eq=False)

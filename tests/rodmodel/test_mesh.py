@@ -25,6 +25,12 @@ def test_a_level_too_many_is_refused() -> None:
         rod_mesh(ROD, [5, 2], 4)
 
 
+@pytest.mark.parametrize(("level", "order"), [(0, 4), (2.5, 4), ([1, 2, -3], 4), (2, 1)])
+def test_levels_below_one_and_orders_below_two_are_refused(level, order) -> None:
+    with pytest.raises(ValueError, match="whole numbers of at least"):
+        rod_mesh(ROD, level, order)
+
+
 def test_parts_of_an_element_keep_its_level_and_order() -> None:
     mesh = split(rod_mesh(ROD, [5, 2, 3], [4, 6, 8]), np.array([15.0, 20.0 + 1e-9, 25.0]))
     np.testing.assert_allclose(mesh.borders, [0, 10, 15, 20, 25, 30])

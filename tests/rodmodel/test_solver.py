@@ -170,3 +170,8 @@ def test_high_levels_are_needed_near_clamps_and_contact_alone() -> None:
     assert somewhere.outcome == "converged"
     assert contact_force(somewhere) == pytest.approx(contact_force(everywhere), rel=1e-4)
     assert somewhere.cost.unknowns < 0.9 * everywhere.cost.unknowns
+
+
+def test_levels_for_some_rods_only_are_refused() -> None:
+    with pytest.raises(ValueError, match="found none for rod 'upper'"):
+        rm.solve(PAPER["e50-g0"].scene, level={"lower": [3] * 6})
