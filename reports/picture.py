@@ -130,7 +130,10 @@ def draw(scene: Scene, quantities: Quantities) -> Picture:
     _add_supports(plotter, scene, quantities, shifts)
     _add_loads(plotter, scene, quantities, factor, shifts)
     right, up = view_plane(scene, quantities)
-    _add_scale(plotter, quantities, right, up)
+    size = extent(quantities)
+    # Sections that are not small beside the scene, with their clamps, need more room.
+    stout = max(0.0, 2.2 * max(float(np.ptp(outline(rod.section), axis=0).max()) for rod in scene.rods) - 0.1 * size)
+    _add_scale(plotter, quantities, right, up, stout)
     plotter.add_scalar_bar(
         title="Displacement of the centre line, mm\n",
         mapper=coloured.mapper,
@@ -146,12 +149,13 @@ def draw(scene: Scene, quantities: Quantities) -> Picture:
     )
     plotter.enable_parallel_projection()
     plotter.enable_anti_aliasing("ssaa")
-    size = extent(quantities)
     lowered = -0.03 * size * up
     plotter.view_vector(np.cross(right, up) + 0.30 * up - 0.10 * right, viewup=up)
     plotter.reset_camera()
     high = float(np.ptp(up @ np.hstack([rod.position for rod in quantities.rods])))
-    plotter.camera.parallel_scale = 0.5 * max(1.15 * size * SIZE[1] / SIZE[0], 1.3 * high + 0.35 * size)
+    plotter.camera.parallel_scale = 0.5 * max(
+        (1.15 * size + 2.0 * stout) * SIZE[1] / SIZE[0], 1.3 * high + 0.35 * size + stout
+    )
     plotter.camera.focal_point = np.asarray(plotter.camera.focal_point) + lowered
     plotter.camera.position = np.asarray(plotter.camera.position) + lowered
     stream = io.BytesIO()
@@ -221,15 +225,15 @@ def _add_loads(
         _add_text(plotter, tips[len(tips) // 2] - 1.12 * length * direction, load_text(load))
 
 
-def _add_scale(plotter: pyvista.Plotter, quantities: Quantities, right: Array, up: Array) -> None:
-    """A bar of round length below the rods, from their left end, labelled in mm."""
+def _add_scale(plotter: pyvista.Plotter, quantities: Quantities, right: Array, up: Array, stout: float) -> None:
+    """A bar of round length below the rods, from their left end, labelled in mm; `stout` mm lower for thick ones."""
     size = extent(quantities)
     points = np.hstack([rod.position for rod in quantities.rods])
     length = round_below(0.25 * size)
     low_right, low_up = (right @ points).min(), (up @ points).min()
     away = np.cross(right, up)
     depth = float(away @ quantities.rods[0].position[:, 0])
-    below = (low_right + 0.02 * size) * right + (low_up - 0.13 * size) * up + depth * away
+    below = (low_right + 0.02 * size) * right + (low_up - 0.13 * size - 0.5 * stout) * up + depth * away
     ends = np.array([below, below + length * right])
     tick = up * 0.008 * size
     for line in (ends, [ends[0] - tick, ends[0] + tick], [ends[1] - tick, ends[1] + tick]):
