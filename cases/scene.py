@@ -12,7 +12,7 @@ the rod's start. Displacements in this frame are (u, v, w).
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import Literal
 
@@ -449,6 +449,8 @@ class ContactPair:
 class Scene:
     """Rods with everything that acts on them.
 
+    A load at the end of a curved rod, written with the rounded length, is set to that end.
+
     Raises
     ------
     SceneError
@@ -475,10 +477,13 @@ class Scene:
             _require(support.end in ENDS, f"{key}.end", support.end, "write 'start' or 'end'")
             again = support in self.supports[: number - 1]
             _require(not again, key, f"{support.rod} {support.end} again", "support an end once")
+        loads = []
         for number, load in enumerate(self.loads, 1):
             key = f"loads #{number}"
             rod = self._rod_at(f"{key}.rod", load.rod)
-            _check_load(load, rod, key)
+            loads.append(_not_beyond_end(load, rod))
+            _check_load(loads[-1], rod, key)
+        object.__setattr__(self, "loads", tuple(loads))
         for pair in self.contacts:
             self._check_contact(pair)
 
@@ -521,6 +526,16 @@ class Scene:
             if pair.name == name:
                 return pair
         raise KeyError(name)
+
+
+def _not_beyond_end(load: Load, rod: Rod) -> Load:
+    """The load, set to the end of a curved rod where it was written there with a rounded length."""
+    if isinstance(rod.centre_line, Line):
+        return load
+    place = load.end if isinstance(load, LineLoad) else load.position
+    if not math.isclose(place, rod.length, rel_tol=_ROUNDED):
+        return load
+    return replace(load, end=rod.length) if isinstance(load, LineLoad) else replace(load, position=rod.length)
 
 
 def _check_load(load: Load, rod: Rod, key: str) -> None:

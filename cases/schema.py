@@ -210,7 +210,7 @@ class RodTable(_Table):
     element_borders: tuple[Length, ...]
     """Borders of the rod model's elements, a list of rising lengths from 0 to the rod's length, along the rod
     from its start; borders inside a contact zone move to the edges of the contact. The last border may be rounded
-    to four digits, as the length of a curved rod is seldom a round number."""
+    to four digits, as the length of a curved rod is seldom a round number; a load's place at its end likewise."""
     centre_line: Annotated[CentreLineTable, Field(discriminator="shape")]
     """The rod's centre line, as table [rods.NAME.centre_line]."""
 

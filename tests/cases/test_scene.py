@@ -268,6 +268,20 @@ def test_a_rounded_last_border_is_set_to_the_length():
     assert error.key == "rods.bow.element_borders"
 
 
+@pytest.mark.parametrize("written", [157.08, 157.0796])
+def test_loads_at_the_rounded_end_of_a_curved_rod_are_set_to_it(written):
+    arc = Helix(RADIAL, ORIGIN, AXIS, math.pi / 2.0, AXIS)
+    bow = Rod("bow", arc, SQUARE, STEEL, (0.0, arc.length))
+    up = (0.0, 0.0, 1.0)
+    loads = (SectionForce("bow", written, up), SectionMoment("bow", written, up), LineLoad("bow", 50.0, written, up))
+
+    force, moment, line = scene(rods=(bow,), loads=loads, contacts=()).loads
+
+    assert force.position == moment.position == line.end == arc.length
+    error = refusal(scene, rods=(bow,), loads=(replace(force, position=157.2),), contacts=())
+    assert error.key == "loads #1.position"
+
+
 @pytest.mark.parametrize(
     ("other", "remedy"),
     [

@@ -1,11 +1,14 @@
 """The JSON Schema of case files: true of the library, strict, and documentation in itself."""
 
+import copy
 import tomllib
 
 import jsonschema
 import pytest
 
-from cases.loader import LIBRARY, library_names
+from cases.building import case_from
+from cases.form import FormError, checked_form
+from cases.loader import LIBRARY, TRUTH, library_names
 from cases.schema import case_schema
 
 
@@ -38,6 +41,79 @@ def test_the_schema_refuses_what_the_loader_refuses(table, key, value):
 
     with pytest.raises(jsonschema.ValidationError):
         jsonschema.Draft202012Validator(case_schema()).validate(wrong)
+
+
+ONE_OF_EACH = {
+    "title": "One of each",
+    "materials": {"steel": {"young_modulus": "200 GPa", "poisson_ratio": 0.3}},
+    "sections": {
+        "wire": {"shape": "circle", "diameter": "4 mm"},
+        "tube": {"shape": "ring", "outer_diameter": 4, "inner_diameter": 2},
+        "beam": {"shape": "box", "width": 20, "height": 10, "wall": "1 mm"},
+        "angle": {"shape": "polygon", "outer": [[0, 0], [9, 0], [0, "9 mm"]], "holes": [[[1, 1], [2, 1], [1, 2]]]},
+    },
+    "rods": {
+        "bow": {
+            "section": "wire",
+            "material": "steel",
+            "element_borders": [0, 157.08],
+            "centre_line": {
+                "shape": "arc",
+                "start": [100, 0, 0],
+                "centre": [0, 0, 0],
+                "axis": [0, 0, 1],
+                "angle": "90 deg",
+                "up": [0, 0, 1],
+            },
+        },
+        "drill": {
+            "section": "angle",
+            "material": "steel",
+            "element_borders": [0, 60],
+            "centre_line": {"shape": "line", "start": [0, 0, 9], "end": [60, 0, 9], "up": [0, 1, 0], "twist": 1.5},
+        },
+    },
+    "supports": [{"kind": "clamp", "rod": "bow", "end": "start"}, {"kind": "clamp", "rod": "drill", "end": "end"}],
+    "loads": [
+        {"kind": "section moment", "rod": "bow", "position": 157.08, "moment": [0, 0, "1 N m"]},
+        {"kind": "line load", "rod": "drill", "start": 0, "end": 30, "force": [0, "-2 kN/m", 0]},
+    ],
+    "rod_model": {"level": 3, "order": 5},
+}
+
+
+def changed(*place, value):
+    """`ONE_OF_EACH` with another value at a place."""
+    content = copy.deepcopy(ONE_OF_EACH)
+    table = content
+    for key in place[:-1]:
+        table = table[key]
+    table[place[-1]] = value
+    return content
+
+
+def test_every_shape_and_load_fits_the_schema():
+    jsonschema.Draft202012Validator(case_schema()).validate(ONE_OF_EACH)
+
+    assert case_from("each", checked_form(ONE_OF_EACH), TRUTH).scene.rods[1].centre_line.twist == 1.5
+
+
+@pytest.mark.parametrize(
+    "wrong",
+    [
+        pytest.param(changed("sections", "wire", "shape", value="circel"), id="unknown shape"),
+        pytest.param(changed("sections", "wire", "shape", value="ring"), id="keys of another shape"),
+        pytest.param(changed("sections", "angle", "outer", value=[[0, 0, 0]]), id="corner with three coordinates"),
+        pytest.param(changed("rods", "bow", "centre_line", "pitch", value=3), id="arc with a pitch"),
+        pytest.param(changed("loads", 0, "kind", value="line load"), id="keys of another load"),
+        pytest.param(changed("loads", 1, "force", value=[0, 1]), id="force with two components"),
+    ],
+)
+def test_schema_and_loader_refuse_the_same_shapes_and_loads(wrong):
+    with pytest.raises(jsonschema.ValidationError):
+        jsonschema.Draft202012Validator(case_schema()).validate(wrong)
+    with pytest.raises(FormError):
+        checked_form(wrong)
 
 
 def test_every_key_is_described():
