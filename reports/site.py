@@ -1,8 +1,4 @@
-"""The report: one self-contained HTML page, and the results as JSON beside it.
-
-The page fetches nothing: plotly's script, styles, pictures and data all stand in it, and its content security policy
-forbids the rest.
-"""
+"""The report: one self-contained HTML page, and the results as JSON beside it."""
 
 from __future__ import annotations
 
@@ -12,20 +8,16 @@ import math
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
-from datetime import UTC, datetime
-from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import plotly.graph_objects as go
-from jinja2 import Environment, FileSystemLoader, StrictUndefined, select_autoescape
-from markupsafe import Markup
-from plotly.offline import get_plotlyjs
 
-from reports.comparison import Comparison, Verdict
+from reports.comparison import Comparison
 from reports.figures import deflection_figure, moment_figure, pressure_figure
 from reports.formatting import MODEL_NAMES, measure, number, seconds, stretches, title, values_with_unit
+from reports.html import rendered
 from reports.processes import ProcessFailed, Progress, in_own_process
 from reports.quantities import DEFINITIONS
 from reports.result import result
@@ -33,8 +25,6 @@ from reports.runner import ROD_REPEATS, CaseRun, Failure, Run
 from reports.sketch import scene_sketch
 from reports.store import write_whole
 from reports.truth import independent_values
-
-HERE = Path(__file__).parent
 
 DEFLECTION_CAPTION = "Below: difference from the 3D of this run on its finest mesh, in micrometres."
 ALONE_CAPTION = "There is no 3D of this run to draw differences from."
@@ -59,15 +49,19 @@ class DrawnPicture:
     problem: str
 
 
-def write_report(runs: Sequence[CaseRun | Failure], output: Path) -> Path:
+def write_report(runs: Sequence[CaseRun | Failure], output: Path, verification: str | None = None) -> Path:
     """Write `index.html` and `results/*.json` into the folder `output`; returns the page's path.
+
+    Parameters
+    ----------
+    verification : file name of the verification page beside it, where there is one
 
     Raises
     ------
     OSError
         if the folder or a file cannot be written.
     """
-    page = render(runs, pictures(runs))
+    page = render(runs, pictures(runs), verification)
     for run in runs:
         if isinstance(run, CaseRun):
             _write_results(run, output / "results")
@@ -75,15 +69,10 @@ def write_report(runs: Sequence[CaseRun | Failure], output: Path) -> Path:
     return output / "index.html"
 
 
-def render(runs: Sequence[CaseRun | Failure], drawn: Mapping[str, DrawnPicture]) -> str:
-    """The page as HTML."""
-    environment = Environment(
-        loader=FileSystemLoader(HERE),
-        autoescape=select_autoescape(default=True, default_for_string=True),
-        undefined=StrictUndefined,
-        trim_blocks=True,
-    )
-    environment.globals.update(verdict=_verdict_mark, verdicts=_verdict_marks)
+def render(
+    runs: Sequence[CaseRun | Failure], drawn: Mapping[str, DrawnPicture], verification: str | None = None
+) -> str:
+    """The page as HTML, with a link to the verification page where there is one."""
     cases, figures = [], {}
     for index, run in enumerate(runs, start=1):
         anchor = f"case-{index}"
@@ -93,15 +82,13 @@ def render(runs: Sequence[CaseRun | Failure], drawn: Mapping[str, DrawnPicture])
         case, found = _case(run, anchor, drawn[run.case.name])
         cases.append(case)
         figures.update(found)
-    return environment.get_template("page.html.jinja").render(
-        css=Markup((HERE / "page.css").read_text(encoding="utf-8")),
-        plotly=Markup(get_plotlyjs()),
-        figures=_script_json(figures),
-        date=datetime.now(UTC).strftime("%d %B %Y, %H:%M UTC"),
-        version=_version(),
+    return rendered(
+        "page.html.jinja",
+        figures,
         cases=cases,
         definitions=DEFINITIONS.values(),
         repeats=ROD_REPEATS,
+        verification=verification,
     )
 
 
@@ -127,32 +114,6 @@ def _draw_all(runs: Sequence[CaseRun], progress: Progress) -> dict[str, DrawnPic
     return drawn
 
 
-def _version() -> str:
-    try:
-        return version("rodcheck")
-    except PackageNotFoundError:
-        return "not installed"
-
-
-def _script_json(value: object) -> Markup:
-    """JSON that may stand inside a script element."""
-    text = json.dumps(value, separators=(",", ":"), allow_nan=False)
-    return Markup(text.replace("<", "\\u003c"))
-
-
-def _verdict_mark(verdict: Verdict) -> Markup:
-    return Markup('<span class="verdict {}">{}</span>').format(verdict.replace(" ", "-"), verdict)
-
-
-def _verdict_marks(counts: Mapping[Verdict, int]) -> Markup:
-    marks = [
-        Markup('<span class="verdict {}">{} {}</span>').format(verdict.replace(" ", "-"), count, verdict)
-        for verdict, count in counts.items()
-        if count
-    ]
-    return Markup(" ").join(marks)
-
-
 def _failed_case(run: Failure, anchor: str) -> dict[str, Any]:
     return {
         "anchor": anchor,
@@ -167,7 +128,7 @@ def _failed_case(run: Failure, anchor: str) -> dict[str, Any]:
     }
 
 
-def _case(run: CaseRun, anchor: str, picture: DrawnPicture) -> tuple[dict[str, Any], dict[str, Any]]:
+def _case(run: CaseRun, anchor: str, picture: DrawnPicture) -> tuple[dict[str, Any], dict[str, go.Figure]]:
     """What the template needs to know of a case, and its figures by the id of their place."""
     case = run.case
     truth = None if case.independent is None else independent_values(case.independent, case.scene)
@@ -194,7 +155,7 @@ def _case(run: CaseRun, anchor: str, picture: DrawnPicture) -> tuple[dict[str, A
     figures, places = {}, []
     for number_, (heading, caption, figure) in enumerate(drawn, start=1):
         place = f"{anchor}-figure-{number_}"
-        figures[place] = _plain(figure)
+        figures[place] = figure
         models = "rod model" if run.refusal else "rod model and 3D"
         alt = f"{heading} of {case.title}, {models}; the numbers are in the results beside the page."
         height = figure.layout.height
@@ -228,11 +189,6 @@ def _case(run: CaseRun, anchor: str, picture: DrawnPicture) -> tuple[dict[str, A
         "costs": [_cost_row(solver, answer) for solver, answer in _solvers(run)],
     }
     return content, figures
-
-
-def _plain(figure: go.Figure) -> dict[str, Any]:
-    plain: dict[str, Any] = json.loads(figure.to_json())
-    return plain
 
 
 def _sketch_caption(contacts: Sequence[Any]) -> str:

@@ -1,0 +1,73 @@
+"""What the report's pages have in common: look, plotly's script, figures as data, marks of verdicts.
+
+A page fetches nothing: plotly's script, styles, pictures and data all stand in it, and its content security policy
+forbids the rest.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from datetime import UTC, datetime
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
+from typing import Any
+
+import plotly.graph_objects as go
+from jinja2 import Environment, FileSystemLoader, StrictUndefined, select_autoescape
+from markupsafe import Markup
+from plotly.offline import get_plotlyjs
+
+from reports.comparison import Verdict
+
+HERE = Path(__file__).parent
+
+
+def rendered(template: str, figures: Mapping[str, go.Figure], **content: object) -> str:
+    """A page as HTML: a template with its content, and the figures by the id of their place."""
+    environment = Environment(
+        loader=FileSystemLoader(HERE),
+        autoescape=select_autoescape(default=True, default_for_string=True),
+        undefined=StrictUndefined,
+        trim_blocks=True,
+    )
+    environment.globals.update(verdict=_verdict_mark, verdicts=_verdict_marks)
+    return environment.get_template(template).render(
+        css=Markup((HERE / "page.css").read_text(encoding="utf-8")),
+        plotly=Markup(get_plotlyjs()),
+        figures=_script_json({place: _plain(figure) for place, figure in figures.items()}),
+        date=datetime.now(UTC).strftime("%d %B %Y, %H:%M UTC"),
+        version=_version(),
+        **content,
+    )
+
+
+def _plain(figure: go.Figure) -> dict[str, Any]:
+    plain: dict[str, Any] = json.loads(figure.to_json())
+    return plain
+
+
+def _version() -> str:
+    try:
+        return version("rodcheck")
+    except PackageNotFoundError:
+        return "not installed"
+
+
+def _script_json(value: object) -> Markup:
+    """JSON that may stand inside a script element."""
+    text = json.dumps(value, separators=(",", ":"), allow_nan=False)
+    return Markup(text.replace("<", "\\u003c"))
+
+
+def _verdict_mark(verdict: Verdict) -> Markup:
+    return Markup('<span class="verdict {}">{}</span>').format(verdict.replace(" ", "-"), verdict)
+
+
+def _verdict_marks(counts: Mapping[Verdict, int]) -> Markup:
+    marks = [
+        Markup('<span class="verdict {}">{} {}</span>').format(verdict.replace(" ", "-"), count, verdict)
+        for verdict, count in counts.items()
+        if count
+    ]
+    return Markup(" ").join(marks)
