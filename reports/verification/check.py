@@ -1,0 +1,119 @@
+"""What a verification check is, and what came of one: a number of the rod model, level by level, beside a reference."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Literal
+
+from reports.comparison import Verdict
+
+Kind = Literal["closed form", "published", "3d converged"]
+
+LEVELS = (1, 2, 3, 4, 5, 6, 7, 8)
+
+
+def elasticity(article: int) -> str:
+    """Citation of an article of the textbook most closed forms are from."""
+    return f"S. P. Timoshenko, J. N. Goodier, Theory of Elasticity, 1970, article {article}"
+
+
+@dataclass(frozen=True)
+class Reference:
+    """A reference value.
+
+    Attributes
+    ----------
+    value : in the check's unit
+    uncertainty : how far it may be from what the rod model should give, in the same unit: zero for what is exact, for
+        an approximate formula the size of what it leaves out
+    """
+
+    value: float
+    uncertainty: float = 0.0
+
+
+@dataclass(frozen=True)
+class Check:
+    """One number of the rod model held against a reference, level by level.
+
+    Attributes
+    ----------
+    shows : in one sentence, what the check shows
+    kind : 'closed form' is computed here from its formula; 'published' and '3d converged' are numbers made elsewhere,
+        or 3D of this run
+    source : citation
+    unit : of value and reference; empty where they have none
+    reference : makes the reference value
+    value : the number at a level
+    levels : levels tried
+    tolerance : largest relative error allowed at level `at_level`
+    published : a well-known published value that is less right than the reference, for comparison
+    """
+
+    name: str
+    shows: str
+    kind: Kind
+    source: str
+    unit: str
+    reference: Callable[[], Reference]
+    value: Callable[[int], float]
+    tolerance: float
+    at_level: int
+    levels: tuple[int, ...] = LEVELS
+    published: float | None = None
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """A check carried out.
+
+    Attributes
+    ----------
+    values : one for each of the check's levels
+    """
+
+    check: Check
+    reference: Reference
+    values: tuple[float, ...]
+
+    @property
+    def errors(self) -> tuple[float, ...]:
+        """Relative errors with their sign, one for each level."""
+        return tuple(value / self.reference.value - 1.0 for value in self.values)
+
+    @property
+    def error(self) -> float:
+        """The relative error at the level where the tolerance must be met."""
+        return self.errors[self.check.levels.index(self.check.at_level)]
+
+    @property
+    def relative_uncertainty(self) -> float:
+        """Uncertainty of the reference, relative to it."""
+        return self.reference.uncertainty / abs(self.reference.value)
+
+    @property
+    def verdict(self) -> Verdict:
+        """'not resolved' where the reference is less certain than the tolerance asks."""
+        if self.relative_uncertainty > self.check.tolerance:
+            return "not resolved"
+        return "pass" if abs(self.error) <= self.check.tolerance else "fail"
+
+
+@dataclass(frozen=True)
+class Group:
+    """Checks of one subject.
+
+    Attributes
+    ----------
+    text : what they have in common, in a sentence or two
+    """
+
+    title: str
+    text: str
+    checks: tuple[Check, ...]
+
+
+def carried_out(check: Check) -> Outcome:
+    """Solve a check at all its levels."""
+    return Outcome(check, check.reference(), tuple(check.value(level) for level in check.levels))

@@ -1,0 +1,35 @@
+"""What `rodcheck verify` prints."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+from rich.console import Console
+from rich.table import Table
+
+from reports.tables import STYLES, WIDTH
+from reports.verification.check import Group, Outcome
+from reports.verification.wording import reference, relative, uncertainty
+
+
+def print_verification(groups: Sequence[Group], outcomes: Mapping[str, Outcome]) -> None:
+    """Print a line for each check: reference, uncertainty, error and tolerance at the level that counts."""
+    console = Console(highlight=False)
+    if not console.is_terminal:
+        console = Console(highlight=False, width=WIDTH)
+    table = Table("check", "reference", "", "uncertainty", "level", "error", "tolerance", "verdict")
+    for group in groups:
+        table.add_section()
+        for check in group.checks:
+            outcome = outcomes[check.name]
+            table.add_row(
+                check.name,
+                reference(outcome.reference, check.unit),
+                check.kind,
+                uncertainty(outcome),
+                f"h{check.at_level}",
+                relative(outcome.error),
+                relative(check.tolerance),
+                f"[{STYLES[outcome.verdict]}]{outcome.verdict}[/]",
+            )
+    console.print(table)

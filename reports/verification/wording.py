@@ -1,0 +1,54 @@
+"""How errors, tolerances and references of checks are written, on the terminal and on the page alike."""
+
+from __future__ import annotations
+
+from reports.formatting import number
+from reports.verification.check import Check, Outcome, Reference
+
+# Relative errors from here on are written in per cent.
+LEAST_PER_CENT = 1e-5
+# Errors smaller than this are round-off.
+ROUND_OFF = 1e-13
+
+_SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+
+
+def relative(error: float) -> str:
+    """A relative error with its sign: '−0.12 %', or a power of ten where it is small ('3·10⁻⁹')."""
+    size = abs(error)
+    if size < ROUND_OFF:
+        return "0"
+    sign = "−" if error < 0.0 else ""
+    if size >= LEAST_PER_CENT:
+        return f"{sign}{_plain(100.0 * size)} %"
+    mantissa, exponent = f"{size:.0e}".split("e")
+    return f"{sign}{mantissa}·10{str(int(exponent)).translate(_SUPERSCRIPTS)}"
+
+
+def _plain(value: float) -> str:
+    """Two significant digits without an exponent."""
+    text = f"{value:.2g}"
+    return f"{float(text):.0f}" if "e" in text and value >= 1.0 else text
+
+
+def reference(found: Reference, unit: str) -> str:
+    """A reference value with its unit."""
+    return f"{number(found.value)} {unit}".strip()
+
+
+def uncertainty(outcome: Outcome) -> str:
+    """The relative uncertainty of the reference."""
+    return "exact" if outcome.reference.uncertainty == 0.0 else f"± {relative(outcome.relative_uncertainty)}"
+
+
+def tolerance(check: Check) -> str:
+    """The tolerance and the level at which it must be met."""
+    return f"{relative(check.tolerance)} at h{check.at_level}"
+
+
+def published(outcome: Outcome) -> str:
+    """The well-known published value and how far it is from the reference; empty where there is none."""
+    value = outcome.check.published
+    if value is None:
+        return ""
+    return f"{number(value, 4)} ({relative(value / outcome.reference.value - 1.0)})"
