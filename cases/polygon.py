@@ -59,7 +59,8 @@ def depth(corners: Corners, point: tuple[float, float]) -> float:
     start = np.array(corners, dtype=float) - np.array(point, dtype=float)
     end = np.roll(start, -1, axis=0)
     along = end - start
-    share = np.clip(-(start * along).sum(axis=1) / (along**2).sum(axis=1), 0.0, 1.0)
+    squared = np.maximum((along**2).sum(axis=1), np.finfo(float).tiny)  # lengths may underflow
+    share = np.clip(-(start * along).sum(axis=1) / squared, 0.0, 1.0)
     distance = float(np.linalg.norm(start + share[:, None] * along, axis=1).min())
     # The corners turn once around a point inside, and not at all around one outside.
     turned = np.arctan2(start[:, 0] * end[:, 1] - start[:, 1] * end[:, 0], (start * end).sum(axis=1)).sum()

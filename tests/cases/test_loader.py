@@ -609,11 +609,17 @@ def test_a_library_case_is_found_from_any_folder(tmp_path, monkeypatch):
     assert load_case(library_names()[0]).name == library_names()[0]
 
 
-lines = GOOD.splitlines()
+CURVED = single(
+    section=POLYGON + "\nholes = [[[1, 1], [2, 1], [1, 2]]]",
+    line=ARC.replace("arc", "helix") + "\npitch = 0",
+    load=LINE_LOAD,
+    more=stress_at("[0, 4, 9]"),
+)
 
 
 @given(data=st.data())
 def test_no_edit_of_a_line_gives_anything_but_a_case_or_a_sentence(data, tmp_path_factory):
+    lines = data.draw(st.sampled_from([GOOD, CURVED])).splitlines()
     index = data.draw(st.integers(0, len(lines) - 1))
     key = lines[index].partition("=")[0]
     value = data.draw(
