@@ -1,4 +1,4 @@
-"""The command `rodcheck`: list, solve, compare, report and schema.
+"""The command `rodcheck`: list, solve, compare, report, verify and schema.
 
 Heavy imports wait until a command needs them. Bad input is answered by one sentence on standard error and
 exit code 2; a verdict other than 'pass', a solver that did not converge or a case that failed by exit code 1. The
@@ -16,10 +16,11 @@ from typing import TYPE_CHECKING, Annotated, Literal, NoReturn
 from cyclopts import App, CycloptsError, Parameter, validators
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Mapping, Sequence
 
     from cases.case import Case
     from reports.runner import CaseRun, Failure
+    from reports.verification.check import Outcome
 
 BAD_INPUT = 2
 NOT_PASSED = 1
@@ -156,6 +157,8 @@ def compare(*cases: str) -> int:
 def report(*cases: str, output: Path = Path("report")) -> int:
     """Solve cases both ways and write one self-contained page, with the results as JSON beside it.
 
+    With the whole library comes the verification page.
+
     Parameters
     ----------
     cases : names of cases of the library, or paths of case files; without any, the whole library
@@ -164,19 +167,37 @@ def report(*cases: str, output: Path = Path("report")) -> int:
     from cases.loader import library_names
 
     loaded = _load_all(cases or library_names())
-    if output.exists() and not output.is_dir():
-        raise InputError(f"--output: found the file {output}; give a folder")
+    _require_folder(output)
+    from reports.runner import Failure
     from reports.site import write_report
 
     runs = _run_all(loaded)
-    try:
-        page = write_report(runs, output)
-    except OSError as error:
-        raise InputError(f"--output: cannot write to {output} ({error.strerror}); give another folder") from error
-    print(page)
-    from reports.runner import Failure
+    outcomes = None if cases else _verification_outcomes()
+    verification = None if outcomes is None else _write_verification(outcomes, output)
+    print(_written(lambda: write_report(runs, output, None if verification is None else verification.name)))
+    incomplete = any(isinstance(run, Failure) for run in runs) or (not cases and outcomes is None)
+    return NOT_PASSED if incomplete else 0
 
-    return NOT_PASSED if any(isinstance(run, Failure) for run in runs) else 0
+
+@app.command
+def verify(*, output: Path = Path("report")) -> int:
+    """Hold the rod model against closed forms, published benchmarks and 3D; print and write what came of it.
+
+    Parameters
+    ----------
+    output : folder for verification.html
+    """
+    _require_folder(output)
+    outcomes = _verification_outcomes()
+    if outcomes is None:
+        return NOT_PASSED
+    from reports.verification.registry import GROUPS
+    from reports.verification.table import print_verification
+
+    page = _write_verification(outcomes, output)
+    print_verification(GROUPS, outcomes)
+    print(page)
+    return 0 if all(outcome.verdict == "pass" for outcome in outcomes.values()) else NOT_PASSED
 
 
 @schema_app.command(name="result")
@@ -195,6 +216,39 @@ def schema_case() -> int:
 
     print(json.dumps(case_schema(), indent=2))
     return 0
+
+
+def _require_folder(output: Path) -> None:
+    if output.exists() and not output.is_dir():
+        raise InputError(f"--output: found the file {output}; give a folder")
+
+
+def _written(write: Callable[[], Path]) -> Path:
+    """The path of what was written."""
+    try:
+        return write()
+    except OSError as error:
+        where = f"cannot write to {error.filename or 'the folder'} ({error.strerror})"
+        raise InputError(f"--output: {where}; give another folder") from error
+
+
+def _verification_outcomes() -> dict[str, Outcome] | None:
+    """What came of the verification checks; None, with the reason on standard error, if a check failed to run."""
+    from reports.processes import ProcessFailed
+    from reports.verification.registry import verify as carry_out
+
+    try:
+        return carry_out()
+    except ProcessFailed as error:
+        print(f"rodcheck: verification: {error}", file=sys.stderr)
+        return None
+
+
+def _write_verification(outcomes: Mapping[str, Outcome], output: Path) -> Path:
+    from reports.verification.page import write_verification
+    from reports.verification.registry import GROUPS
+
+    return _written(lambda: write_verification(GROUPS, outcomes, output))
 
 
 def _load_all(names: Sequence[str]) -> list[Case]:

@@ -112,8 +112,3 @@ class Group:
     title: str
     text: str
     checks: tuple[Check, ...]
-
-
-def carried_out(check: Check) -> Outcome:
-    """Solve a check at all its levels."""
-    return Outcome(check, check.reference(), tuple(check.value(level) for level in check.levels))

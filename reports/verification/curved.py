@@ -46,7 +46,7 @@ def golovin_divisor(inner: float, outer: float) -> float:
 
 
 def golovin_flexibility(radius: float) -> float:
-    """Rotation per moment and radian, 8 (b^2 - a^2) / (E N), from the term of the displacement that grows with the angle."""
+    """Rotation per moment and radian, 8 (b^2 - a^2) / (E N): the displacement's term that grows with the angle."""
     inner, outer = radius - HEIGHT / 2.0, radius + HEIGHT / 2.0
     young = WITHOUT_CONTRACTION.young_modulus * WIDTH
     return 8.0 * (outer**2 - inner**2) / (young * golovin_divisor(inner, outer))

@@ -81,9 +81,10 @@ def curved_beam(direction: Vector, level: int) -> float:
 
 
 def curved_beam_reference() -> Reference:
-    """pi P (a^2 + b^2) / (E t N), N = a^2 - b^2 + (a^2 + b^2) ln(b / a) (Timoshenko and Goodier, article 33).
+    """Deflection pi P (a^2 + b^2) / (E t N), N = a^2 - b^2 + (a^2 + b^2) ln(b / a), in.
 
-    Plane elasticity with the clamped section free to warp and contract; uncertain by the clamp.
+    Timoshenko and Goodier, article 33: plane elasticity with the clamped section free to warp and contract; uncertain
+    by the clamp.
     """
     a, b = INNER, OUTER
     divisor = a**2 - b**2 + (a**2 + b**2) * math.log(b / a)
@@ -92,7 +93,7 @@ def curved_beam_reference() -> Reference:
 
 
 def twisted_beam(direction: Vector, level: int) -> float:
-    """MacNeal and Harder's twisted beam: 12 x 1.1 x 0.32, the wide side along Y at the clamp, along Z at the end, in."""
+    """MacNeal and Harder's twisted beam, 12 x 1.1 x 0.32; the wide side along Y at the clamp, along Z at the end."""
     line = straight(12.0, twist=math.pi / 2.0)
     scene = clamped(line, Rectangle(0.32, 1.1), Material(29e6, 0.22), 1.1, 4, end_force(line, direction))
     return work(scene, level, ORDER)
@@ -223,7 +224,7 @@ GROUP = Group(
             "in",
             lambda: Reference(0.00175325, 1e-8),
             partial(twisted_beam, (0.0, 1.0, 0.0)),
-            2e-3,
+            5e-4,
             6,
         ),
         Check(
@@ -234,7 +235,7 @@ GROUP = Group(
             "in",
             lambda: Reference(0.00542453, 1e-8),
             partial(twisted_beam, (0.0, 0.0, 1.0)),
-            2e-3,
+            5e-4,
             6,
         ),
         Check(

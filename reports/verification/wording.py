@@ -7,6 +7,8 @@ from reports.verification.check import Check, Outcome, Reference
 
 # Relative errors from here on are written in per cent.
 LEAST_PER_CENT = 1e-5
+# Smaller values are written with a power of ten.
+LEAST_PLAIN = 0.01
 # Errors smaller than this are round-off.
 ROUND_OFF = 1e-13
 
@@ -21,8 +23,12 @@ def relative(error: float) -> str:
     sign = "−" if error < 0.0 else ""
     if size >= LEAST_PER_CENT:
         return f"{sign}{_plain(100.0 * size)} %"
-    mantissa, exponent = f"{size:.0e}".split("e")
-    return f"{sign}{mantissa}·10{str(int(exponent)).translate(_SUPERSCRIPTS)}"
+    return sign + _power_of_ten(size, 1)
+
+
+def _power_of_ten(value: float, digits: int) -> str:
+    mantissa, exponent = f"{value:.{digits - 1}e}".split("e")
+    return f"{mantissa}·10{str(int(exponent)).translate(_SUPERSCRIPTS)}"
 
 
 def _plain(value: float) -> str:
@@ -33,7 +39,12 @@ def _plain(value: float) -> str:
 
 def reference(found: Reference, unit: str) -> str:
     """A reference value with its unit."""
-    return f"{number(found.value)} {unit}".strip()
+    return f"{_value(found.value)} {unit}".strip()
+
+
+def _value(value: float) -> str:
+    """Six significant digits."""
+    return number(value) if abs(value) >= LEAST_PLAIN else _power_of_ten(value, 6)
 
 
 def uncertainty(outcome: Outcome) -> str:
@@ -51,4 +62,4 @@ def published(outcome: Outcome) -> str:
     value = outcome.check.published
     if value is None:
         return ""
-    return f"{number(value, 4)} ({relative(value / outcome.reference.value - 1.0)})"
+    return f"{_value(value)} ({relative(value / outcome.reference.value - 1.0)})"
