@@ -87,6 +87,40 @@ class Material:
 
 
 @dataclass(frozen=True)
+class Orthotropic:
+    """Linear elasticity with three planes of symmetry, those of the rod's frame (e1, e2, t).
+
+    Parameters
+    ----------
+    young_moduli : E_1, E_2, E_3 along e1, e2 and t, MPa
+    shear_moduli : G_23, G_13, G_12 between e2 and t, e1 and t, e1 and e2, MPa
+    poisson_ratios : nu_12, nu_13, nu_23; nu_ij is the contraction along j for one of extension along i
+    """
+
+    young_moduli: Vector
+    shear_moduli: Vector
+    poisson_ratios: Vector
+
+    def __post_init__(self) -> None:
+        for key, moduli in (("young_moduli", self.young_moduli), ("shear_moduli", self.shear_moduli)):
+            _require_finite(moduli, key)
+            _require(min(moduli) > 0.0, key, list(moduli), "moduli must be positive")
+        _require_finite(self.poisson_ratios, "poisson_ratios")
+        (e1, e2, e3), (nu12, nu13, nu23) = self.young_moduli, self.poisson_ratios
+        compliance = np.array(
+            [
+                [1.0 / e1, -nu12 / e1, -nu13 / e1],
+                [-nu12 / e1, 1.0 / e2, -nu23 / e2],
+                [-nu13 / e1, -nu23 / e2, 1.0 / e3],
+            ]
+        )
+        scale = np.sqrt(np.diag(compliance))
+        stable = float(np.linalg.eigvalsh(compliance / np.outer(scale, scale))[0]) > 1e-9
+        remedy = "they must leave every strain an energy: nu_ij^2 < E_i / E_j, and not all of them at once near that"
+        _require(stable, "poisson_ratios", list(self.poisson_ratios), remedy)
+
+
+@dataclass(frozen=True)
 class Rectangle:
     """Rectangular cross-section, sides along the local axes.
 
@@ -307,7 +341,7 @@ class Rod:
     name: str
     centre_line: CentreLine
     section: Section
-    material: Material
+    material: Material | Orthotropic
     element_borders: tuple[float, ...]
 
     def __post_init__(self) -> None:

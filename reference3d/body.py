@@ -14,7 +14,7 @@ from reference3d.frames import pair_overlap, rod_frame
 from reference3d.grading import Borders, rod_borders
 from reference3d.mesh import box_mesh
 from reference3d.quadratic import line_nodes, nodal_weights
-from reference3d.scope import forces, rectangle
+from reference3d.scope import forces, isotropic, rectangle
 
 Array = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
@@ -52,7 +52,7 @@ def discretise(scene: Scene, rod: Rod, refinement: int, symmetric: bool) -> Body
     symmetric : True for the half x >= 0 alone
     """
     borders = rod_borders(scene, rod, refinement, symmetric)
-    stiffness = layered_stiffness(box_mesh(borders.x, borders.y, borders.s), borders, rod.material)
+    stiffness = layered_stiffness(box_mesh(borders.x, borders.y, borders.s), borders, isotropic(rod))
     x, y, s = (line_nodes(axis) for axis in (borders.x, borders.y, borders.s))
     fixed = np.zeros((len(s), len(y), len(x), 3), dtype=bool)
     fixed[:, :, 0, 0] = symmetric

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from cases.scene import Line, LineLoad, Rectangle, Rod, Scene, SceneError, SectionForce
+from cases.scene import Line, LineLoad, Material, Rectangle, Rod, Scene, SceneError, SectionForce
 
 INSTEAD = "yet; use --model rod"
 
@@ -13,11 +13,12 @@ def require_treatable(scene: Scene) -> None:
     Raises
     ------
     SceneError
-        if a rod is curved or twisted or not of rectangular section, or a load is a moment.
+        if a rod is curved, twisted, not isotropic or not of rectangular section, or a load is a moment.
     """
     for rod in scene.rods:
         straight_line(rod)
         rectangle(rod)
+        isotropic(rod)
     forces(scene)
 
 
@@ -38,6 +39,14 @@ def rectangle(rod: Rod) -> Rectangle:
         return rod.section
     found = f"a {type(rod.section).__name__.lower()}"
     raise SceneError(f"rods.{rod.name}.section", found, f"the 3D reference does not mesh any but rectangles {INSTEAD}")
+
+
+def isotropic(rod: Rod) -> Material:
+    """The material of a rod, seen to be isotropic; SceneError if it is not."""
+    if isinstance(rod.material, Material):
+        return rod.material
+    remedy = f"the 3D reference knows isotropic materials alone {INSTEAD}"
+    raise SceneError(f"rods.{rod.name}.material", "an orthotropic material", remedy)
 
 
 def forces(scene: Scene) -> tuple[SectionForce | LineLoad, ...]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from cases.scene import Scene
+from reference3d.scope import isotropic
 from reference3d.solution import Solution
 from reference3d.solver import solve
 from reference3d.uncertainty import clamp_singularity_exponent
@@ -39,4 +40,4 @@ def formal_order(scene: Scene) -> float:
     Clamps make the stress singular at their edges; whatever the order of the elements, the energy error then
     falls as h^(2 lambda) (G. Strang, G. J. Fix, An Analysis of the Finite Element Method, 1973, chapter 8).
     """
-    return 2.0 * min(clamp_singularity_exponent(rod.material.poisson_ratio) for rod in scene.rods)
+    return 2.0 * min(clamp_singularity_exponent(isotropic(rod).poisson_ratio) for rod in scene.rods)

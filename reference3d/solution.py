@@ -15,6 +15,7 @@ from cases.scene import ContactPair, End, Rod, Scene
 from reference3d.field import Field, displacement, section_resultants, stress
 from reference3d.frames import face_frame, rod_frame
 from reference3d.quadratic import nodal_weights
+from reference3d.scope import isotropic
 
 Array = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
@@ -127,11 +128,11 @@ class Solution:
 
     def stress(self, rod: str, points: Array) -> Array:
         """Stress in the local frame at (x, y, s): xx, yy, ss, ys, xs, xy, MPa, shape (6, n)."""
-        return stress(self.rods[rod].field, self.rods[rod].rod.material, np.asarray(points, dtype=np.float64))
+        return stress(self.rods[rod].field, isotropic(self.rods[rod].rod), np.asarray(points, dtype=np.float64))
 
     def section_resultants(self, rod: str, station: Array) -> Array:
         """N, Q1, Q2, M1, M2, T of the finite element stress, N and N mm, shape (6, n)."""
-        return section_resultants(self.rods[rod].field, self.rods[rod].rod.material, station)
+        return section_resultants(self.rods[rod].field, isotropic(self.rods[rod].rod), station)
 
     def reaction(self, rod: str, end: End) -> Array:
         """Force and moment of the support on the rod, global, shape (6,); zero where there is no support."""

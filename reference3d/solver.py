@@ -20,7 +20,7 @@ from reference3d.factor import solve as solve_layers
 from reference3d.field import Field, mirrored
 from reference3d.frames import is_symmetric, rod_frame
 from reference3d.quadratic import line_nodes
-from reference3d.scope import rectangle, require_treatable
+from reference3d.scope import isotropic, rectangle, require_treatable
 from reference3d.solution import Cost, PairResult, RodResult, Solution
 
 Array = NDArray[np.float64]
@@ -97,7 +97,7 @@ def _require_support(scene: Scene) -> None:
 
 def _require_compressible(scene: Scene) -> None:
     for rod in scene.rods:
-        ratio = rod.material.poisson_ratio
+        ratio = isotropic(rod).poisson_ratio
         if ratio > LARGEST_POISSON_RATIO:
             remedy = f"the displacements of the 3D reference need at most {LARGEST_POISSON_RATIO:g}"
             raise SceneError(f"rods.{rod.name}.material.poisson_ratio", f"{ratio:.10g}", remedy)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from markupsafe import Markup, escape
 
-from cases.scene import Load, Rod, Scene, SectionMoment
+from cases.scene import Load, Material, Rod, Scene, SectionMoment
 from reports.geometry import AXES
 from reports.quantities import Quantities, RodQuantities
 from reports.sections import described, outline
@@ -67,9 +67,15 @@ def scene_sketch(scene: Scene, quantities: Quantities) -> Markup:
     )
 
 
+def _named(rod: Rod) -> str:
+    """A rod's name and its modulus along the rod."""
+    material = rod.material
+    modulus = material.young_modulus if isinstance(material, Material) else material.young_moduli[2]
+    return f"{rod.name}, E = {modulus / 1000.0:g} GPa"
+
+
 def _described(rod: Rod) -> str:
-    modulus = rod.material.young_modulus / 1000.0
-    return f"{rod.name}, E = {modulus:g} GPa, {described(rod.section)}, {rod.length:g} mm long"
+    return f"{_named(rod)}, {described(rod.section)}, {rod.length:g} mm long"
 
 
 def _band(rod: Rod, found: RodQuantities, plane: Array) -> _Band:
@@ -89,7 +95,7 @@ def _band(rod: Rod, found: RodQuantities, plane: Array) -> _Band:
 def _bar(rod: Rod, band: _Band) -> str:
     corners = " ".join(f"{x:.2f},{-y:.2f}" for x, y in band.border.T)
     x, y = band.border.mean(axis=1)
-    text = f"{rod.name}, E = {rod.material.young_modulus / 1000.0:g} GPa"
+    text = _named(rod)
     return (
         f'<polygon class="bar" points="{corners}"/>'
         f'<text class="name" x="{x:.1f}" y="{-y + 3.2:.1f}">{escape(text)}</text>'

@@ -7,7 +7,7 @@ nodes, and for the elements it lies in, a part on their bubbles. Compliances are
 from __future__ import annotations
 
 from collections.abc import Callable, Hashable, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,7 +17,7 @@ from rodmodel.axial import shape_functions
 from rodmodel.centre_line import darboux
 from rodmodel.chain import Chain
 from rodmodel.mesh import RodMesh
-from rodmodel.section import Darboux, Fields, section_stiffness
+from rodmodel.section import Darboux, Fields, axial_modulus, per_axial_modulus, section_stiffness
 from rodmodel.stiffness import Element, ElementFamily, condensed_element, element_family
 
 Array = NDArray[np.float64]
@@ -40,10 +40,10 @@ class ElementStore:
     chains: dict[str, Chain] = field(default_factory=dict)
 
     def element(self, rod: Rod, turning: Darboux, fields: Fields, order: int, length: float) -> Element:
-        """Condensed element of the rod for unit Young's modulus; `length` in mm, turning of its frame in rad/mm."""
-        kind = (rod.section, rod.material.poisson_ratio, fields, order, turning)
+        """Condensed element of the rod for unit axial modulus; `length` in mm, turning of its frame in rad/mm."""
+        kind = (rod.section, per_axial_modulus(rod.material), fields, order, turning)
         if kind not in self._families:
-            section = section_stiffness(rod.section, replace(rod.material, young_modulus=1.0), fields, turning)
+            section = section_stiffness(rod.section, per_axial_modulus(rod.material), fields, turning)
             self._families[kind] = element_family(order, fields, section, reversible=turning[2] == 0.0)
         # Lengths that differ only by the round-off of the borders they come from are one length.
         key = (*kind, float(f"{length:.11e}"))
@@ -98,7 +98,7 @@ def assembled_rod(scene: Scene, rod: Rod, mirrors: Mirrors, mesh: RodMesh, store
     )
     chain = Chain(
         elements,
-        rod.material.young_modulus,
+        axial_modulus(rod.material),
         "start" in clamped,
         "end" in clamped,
         previous=store.chains.get(rod.name),
@@ -177,7 +177,7 @@ def functionals(assembled: AssembledRod, parts: Sequence[Part], count: int) -> F
         if len(inner):
             half = element.bubbles.half_solve(part.values[2:, :, inner].reshape(len(element.half_coupling), -1))
             on_nodes[:, :, inner] -= (element.half_coupling.T @ half).reshape(2, element.fields.count, -1)
-            bubbles.append((part.element, part.columns[inner], half / np.sqrt(assembled.rod.material.young_modulus)))
+            bubbles.append((part.element, part.columns[inner], half / np.sqrt(axial_modulus(assembled.rod.material))))
         for side in (0, 1):
             nodal[chain.rows[part.element + side]][:, part.columns] += on_nodes[side, chain.ends[part.element][side]]
         if part.element == 0:
@@ -209,7 +209,7 @@ def coefficients(assembled: AssembledRod, load: Functionals) -> tuple[Array, ...
     """Degrees of freedom under a load (m = 1), element by element, shape (order + 1, n_fields) each."""
     chain = assembled.chain
     carried = chain.back_solve(load.nodal)[:, 0]
-    root = np.sqrt(assembled.rod.material.young_modulus)
+    root = np.sqrt(axial_modulus(assembled.rod.material))
     halves: dict[int, Array] = {}
     for index, _, half in load.bubbles:
         halves[index] = halves.get(index, 0.0) + half[:, 0] / root

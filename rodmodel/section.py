@@ -9,13 +9,13 @@ Strain in the local frame, order (xx, yy, ss, ys, xs, xy):
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
 
-from cases.scene import Material, Section
+from cases.scene import Material, Orthotropic, Section
 from rodmodel.basis import basis_slopes, basis_values, section_basis
 from rodmodel.shape import section_quadrature
 
@@ -145,21 +145,47 @@ def strain_operators(
     return b0, b1, stretch
 
 
-def elasticity_matrix(material: Material, level: int) -> Array:
+def elasticity_matrix(material: Material | Orthotropic, level: int) -> Array:
     """Hooke's law D, stress = D strain in the order (xx, yy, ss, ys, xs, xy), MPa, shape (6, 6).
 
     Full three-dimensional law from h2 on. h1 cannot contract sideways as bending asks, and locks with it (about 25 %
     too stiff); it gets the reduced law of rod theory: sigma_s = E eps_s, uncoupled from plane stress in the section.
     """
-    young, poisson = material.young_modulus, material.poisson_ratio
-    law = np.diag(np.full(6, young / (2.0 * (1.0 + poisson))))
-    if level == 1:
-        law[2, 2] = young
-        law[:2, :2] = young / (1.0 - poisson**2) * np.array([[1.0, poisson], [poisson, 1.0]])
+    if isinstance(material, Material):
+        young, poisson = material.young_modulus, material.poisson_ratio
+        moduli, ratios, shear = (young,) * 3, (poisson,) * 3, (young / (2.0 * (1.0 + poisson)),) * 3
     else:
-        lame = young * poisson / ((1.0 + poisson) * (1.0 - 2.0 * poisson))
-        law[:3, :3] = lame + np.diag(np.full(3, young / (1.0 + poisson)))
+        moduli, ratios, shear = material.young_moduli, material.poisson_ratios, material.shear_moduli
+    (e1, e2, e3), (nu12, nu13, nu23) = moduli, ratios
+    compliance = np.array(
+        [
+            [1.0 / e1, -nu12 / e1, -nu13 / e1],
+            [-nu12 / e1, 1.0 / e2, -nu23 / e2],
+            [-nu13 / e1, -nu23 / e2, 1.0 / e3],
+        ]
+    )
+    law = np.zeros((6, 6))
+    law[[3, 4, 5], [3, 4, 5]] = shear
+    if level == 1:
+        law[:2, :2] = np.linalg.inv(compliance[:2, :2])
+        law[2, 2] = e3
+    else:
+        law[:3, :3] = np.linalg.inv(compliance)
     return law
+
+
+def axial_modulus(material: Material | Orthotropic) -> float:
+    """Young's modulus along the rod, MPa."""
+    return material.young_modulus if isinstance(material, Material) else material.young_moduli[2]
+
+
+def per_axial_modulus(material: Material | Orthotropic) -> Material | Orthotropic:
+    """The material with all moduli in units of the axial one: rods that differ by it alone share their elements."""
+    if isinstance(material, Material):
+        return replace(material, young_modulus=1.0)
+    scale = 1.0 / material.young_moduli[2]
+    young, shear = ((a * scale, b * scale, c * scale) for a, b, c in (material.young_moduli, material.shear_moduli))
+    return replace(material, young_moduli=young, shear_moduli=shear)
 
 
 def product_quadrature(section: Section, level: int, turning: Darboux) -> tuple[Array, Array, Array]:
@@ -180,7 +206,9 @@ class SectionStiffness:
     s11: Array
 
 
-def section_stiffness(section: Section, material: Material, chosen: Fields, turning: Darboux) -> SectionStiffness:
+def section_stiffness(
+    section: Section, material: Material | Orthotropic, chosen: Fields, turning: Darboux
+) -> SectionStiffness:
     """Section stiffness matrices: N, N mm and N mm^2 per unit of psi and psi'.
 
     turning : k1, k2, tau of the frame, rad/mm

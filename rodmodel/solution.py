@@ -21,6 +21,7 @@ from rodmodel.section import (
     U,
     V,
     W,
+    axial_modulus,
     elasticity_matrix,
     product_quadrature,
     section_values,
@@ -150,7 +151,7 @@ class Solution:
         at_end = int(end == "end")
         element, values = assembled.elements[-at_end], self.coefficients[rod][-at_end]
         rows = element.condensed.reshape(2, element.fields.count, -1)[at_end]
-        residual = assembled.rod.material.young_modulus * (rows @ values[:2].ravel()) - load.ends[at_end][:, 0]
+        residual = axial_modulus(assembled.rod.material) * (rows @ values[:2].ravel()) - load.ends[at_end][:, 0]
         axes = frames(assembled.rod.centre_line, assembled.borders[[-at_end]])[0]
         local = _rigid_motions(assembled.rod.section, element.fields) @ residual
         return np.concatenate([axes.T @ local[:3], axes.T @ local[3:]])

@@ -6,7 +6,19 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from cases.scene import Box, Circle, Helix, Line, LineLoad, Polygon, Ring, SceneError, SectionForce, SectionMoment
+from cases.scene import (
+    Box,
+    Circle,
+    Helix,
+    Line,
+    LineLoad,
+    Orthotropic,
+    Polygon,
+    Ring,
+    SceneError,
+    SectionForce,
+    SectionMoment,
+)
 from reference3d.solver import solve
 
 ARC = Helix((100.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, 1.0), math.pi / 2.0, (0.0, 0.0, 1.0))
@@ -48,6 +60,13 @@ def test_what_is_not_meshed_yet_is_refused_with_the_way_out(cantilever, changes,
     assert (caught.value.key, caught.value.found) == (key, found)
     assert "does not mesh" in caught.value.remedy
     assert "use --model rod" in caught.value.remedy
+
+
+def test_an_orthotropic_rod_is_refused(cantilever):
+    wood = Orthotropic((900.0, 500.0, 12000.0), (700.0, 800.0, 60.0), (0.4, 0.03, 0.02))
+
+    with pytest.raises(SceneError, match=r"rods\.rod\.material: found an orthotropic material; .* use --model rod"):
+        solve(changed(cantilever((0.0, -100.0, 0.0)), material=wood))
 
 
 def test_a_moment_is_refused_and_not_left_out(cantilever):
