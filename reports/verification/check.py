@@ -15,7 +15,7 @@ LEVELS = (1, 2, 3, 4, 5, 6, 7, 8)
 
 def elasticity(article: int) -> str:
     """Citation of an article of the textbook most closed forms are from."""
-    return f"S. P. Timoshenko, J. N. Goodier, Theory of Elasticity, 1970, article {article}"
+    return f"Timoshenko, Goodier, Theory of Elasticity, 1970, article {article}"
 
 
 @dataclass(frozen=True)

@@ -44,7 +44,7 @@ def error_figure(outcomes: Sequence[Outcome]) -> go.Figure:
         )
     figure.update_layout(
         template="none",
-        height=max(380, 120 + 22 * len(outcomes)),
+        height=max(380, 100 + 29 * len(outcomes)),
         autosize=True,
         margin={"l": 72, "r": 12, "t": 16, "b": 52},
         paper_bgcolor="rgba(0,0,0,0)",

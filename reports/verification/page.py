@@ -11,7 +11,7 @@ from reports.html import rendered
 from reports.store import write_whole
 from reports.verification.check import Group, Outcome
 from reports.verification.figures import error_figure
-from reports.verification.wording import published, reference, relative, tolerance, uncertainty
+from reports.verification.wording import published, relative, tolerance, uncertainty, value
 
 FILE_NAME = "verification.html"
 
@@ -69,7 +69,8 @@ def _row(outcome: Outcome, levels: Sequence[int]) -> dict[str, Any]:
         "shows": check.shows,
         "kind": check.kind,
         "source": check.source,
-        "reference": reference(outcome.reference, check.unit),
+        "reference": value(outcome.reference.value),
+        "unit": check.unit,
         "uncertainty": uncertainty(outcome),
         "published": published(outcome),
         "tolerance": tolerance(check),

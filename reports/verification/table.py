@@ -9,7 +9,7 @@ from rich.table import Table
 
 from reports.tables import STYLES, WIDTH
 from reports.verification.check import Group, Outcome
-from reports.verification.wording import reference, relative, uncertainty
+from reports.verification.wording import relative, uncertainty, value
 
 
 def print_verification(groups: Sequence[Group], outcomes: Mapping[str, Outcome]) -> None:
@@ -24,7 +24,7 @@ def print_verification(groups: Sequence[Group], outcomes: Mapping[str, Outcome])
             outcome = outcomes[check.name]
             table.add_row(
                 check.name,
-                reference(outcome.reference, check.unit),
+                f"{value(outcome.reference.value)} {check.unit}",
                 check.kind,
                 uncertainty(outcome),
                 f"h{check.at_level}",

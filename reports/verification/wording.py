@@ -1,9 +1,9 @@
-"""How errors, tolerances and references of checks are written, on the terminal and on the page alike."""
+"""How errors, tolerances and reference values of checks are written, on the terminal and on the page alike."""
 
 from __future__ import annotations
 
 from reports.formatting import number
-from reports.verification.check import Check, Outcome, Reference
+from reports.verification.check import Check, Outcome
 
 # Relative errors from here on are written in per cent.
 LEAST_PER_CENT = 1e-5
@@ -37,14 +37,9 @@ def _plain(value: float) -> str:
     return f"{float(text):.0f}" if "e" in text and value >= 1.0 else text
 
 
-def reference(found: Reference, unit: str) -> str:
-    """A reference value with its unit."""
-    return f"{_value(found.value)} {unit}".strip()
-
-
-def _value(value: float) -> str:
-    """Six significant digits."""
-    return number(value) if abs(value) >= LEAST_PLAIN else _power_of_ten(value, 6)
+def value(reference: float) -> str:
+    """Six significant digits, with a power of ten where the value is small."""
+    return number(reference) if abs(reference) >= LEAST_PLAIN else _power_of_ten(reference, 6)
 
 
 def uncertainty(outcome: Outcome) -> str:
@@ -59,7 +54,8 @@ def tolerance(check: Check) -> str:
 
 def published(outcome: Outcome) -> str:
     """The well-known published value and how far it is from the reference; empty where there is none."""
-    value = outcome.check.published
-    if value is None:
+    found = outcome.check.published
+    if found is None:
         return ""
-    return f"{_value(value)} ({relative(value / outcome.reference.value - 1.0)})"
+    written = number(found, 4) if found >= LEAST_PLAIN else _power_of_ten(found, 3)
+    return f"{written} ({relative(found / outcome.reference.value - 1.0)})"
