@@ -44,13 +44,13 @@ def error_figure(outcomes: Sequence[Outcome]) -> go.Figure:
         )
     figure.update_layout(
         template="none",
-        height=max(380, 100 + 29 * len(outcomes)),
+        height=max(380, 150 + 22 * len(outcomes)),
         autosize=True,
         margin={"l": 72, "r": 12, "t": 16, "b": 52},
         paper_bgcolor="rgba(0,0,0,0)",
         plot_bgcolor="rgba(0,0,0,0)",
         font={"family": FONT, "size": 13, "color": INK},
-        legend={"x": 1.02, "xanchor": "left", "y": 1.0, "yanchor": "top", "font": {"size": 12}},
+        legend={"x": 1.02, "xanchor": "left", "y": 1.0, "yanchor": "top", "tracegroupgap": 0},
         hovermode="closest",
     )
     levels = sorted({level for outcome in outcomes for level in outcome.check.levels})

@@ -145,7 +145,7 @@ def square_cantilever(level: int) -> float:
 
 MACNEAL = "R. H. MacNeal, R. L. Harder, Finite Elements in Analysis and Design 1 (1985) 3-20"
 SOLID = "3D made outside this project; uncertainty: a unit of the last digit"
-TIMOSHENKO = "S. P. Timoshenko; uncertain by 0.1 h / L, as the clamp holds the section; benchmark of "
+TIMOSHENKO = "Timoshenko's beam; uncertain by 0.1 h / L, as the clamp holds the section; benchmark of "
 
 GROUP = Group(
     "Published benchmarks",

@@ -57,5 +57,5 @@ def published(outcome: Outcome) -> str:
     found = outcome.check.published
     if found is None:
         return ""
-    written = number(found, 4) if found >= LEAST_PLAIN else _power_of_ten(found, 3)
+    written = f"{found:.4g}" if found >= LEAST_PLAIN else _power_of_ten(found, 3)
     return f"{written} ({relative(found / outcome.reference.value - 1.0)})"

@@ -194,7 +194,7 @@ def test_the_page_fetches_nothing_and_its_links_lead_somewhere(outcomes: dict[st
 def test_every_check_stands_on_the_page_with_one_marked_cell(outcomes: dict[str, Outcome]) -> None:
     page = render(GROUPS, outcomes)
 
-    rows = re.findall(r'<th scope="row">(.*?)<br>.*?</tr>', page, re.DOTALL)
+    rows = re.findall(r'<th scope="row">(.*?)</th>', page)
     assert rows == [check.name for check in ALL]
     cells = re.findall(r'<td class="n"><span class="verdict ([a-z-]+)">', page)
     assert cells == ["fail"] + ["pass"] * (len(ALL) - 1)
