@@ -159,7 +159,7 @@ GROUP = Group(
         *_golovin_checks(),
         Check(
             "Curved bar, R / h = 5: Winkler and Bach",
-            "Plane sections without radial stress, an approximation that h1 is equal to: hoop stress at the inner face.",
+            "Plane sections without radial stress, an approximation that h1 equals: hoop stress at the inner face.",
             "closed form",
             WINKLER,
             "MPa",

@@ -208,9 +208,10 @@ GROUP = Group(
             "Curved beam, out of plane",
             "Bending with torsion of a 2 : 1 rectangle.",
             "3d converged",
-            f"{SOLID}; benchmark of {MACNEAL}",
+            "3D made outside this project; a second 3D, with 27-node hexahedra, rises to 0.4981, hence the uncertainty; "
+            f"benchmark of {MACNEAL}",
             "in",
-            lambda: Reference(0.498302, 1e-6),
+            lambda: Reference(0.498302, 2e-4),
             partial(curved_beam, (0.0, 0.0, 1.0)),
             2e-3,
             6,
