@@ -208,7 +208,7 @@ GROUP = Group(
             "Curved beam, out of plane",
             "Bending with torsion of a 2 : 1 rectangle.",
             "3d converged",
-            "3D made outside this project; a second 3D, with 27-node hexahedra, rises to 0.4981, hence the uncertainty; "
+            "3D made outside this project; a second one (27-node hexahedra) rises to 0.4981, hence the uncertainty; "
             f"benchmark of {MACNEAL}",
             "in",
             lambda: Reference(0.498302, 2e-4),
