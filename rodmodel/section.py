@@ -179,6 +179,7 @@ def axial_modulus(material: Material | Orthotropic) -> float:
     return material.young_modulus if isinstance(material, Material) else material.young_moduli[2]
 
 
+@lru_cache(maxsize=256)
 def per_axial_modulus(material: Material | Orthotropic) -> Material | Orthotropic:
     """The material with all moduli in units of the axial one: rods that differ by it alone share their elements."""
     if isinstance(material, Material):
