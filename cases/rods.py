@@ -1,0 +1,128 @@
+"""A rod: centre line, section, material and the rod model's elements; its ends and faces."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from itertools import pairwise
+from typing import Literal, TypeVar
+
+import numpy as np
+
+from cases.centre_lines import CentreLine, Helix, Line
+from cases.checks import require
+from cases.materials import Material, Orthotropic
+from cases.sections import Box, Rectangle, Section, section_reach
+
+End = Literal["start", "end"]
+Face = Literal["top", "bottom", "left", "right"]
+
+ENDS: tuple[End, ...] = ("start", "end")
+FACES: tuple[Face, ...] = ("top", "bottom", "left", "right")
+
+# The length of a curved rod is written down with finitely many digits.
+ROUNDED = 1e-4
+
+
+@dataclass(frozen=True)
+class Rod:
+    """An elastic rod.
+
+    Parameters
+    ----------
+    name : how supports, loads and contacts call it
+    element_borders : borders of the rod model's elements, arc length from the rod's start, mm; the first is
+        0, the last the rod's length, which it is set to where it was rounded
+    """
+
+    name: str
+    centre_line: CentreLine
+    section: Section
+    material: Material | Orthotropic
+    element_borders: tuple[float, ...]
+
+    def __post_init__(self) -> None:
+        key = f"rods.{self.name}.element_borders"
+        borders = self.element_borders
+        require(len(borders) >= 2, key, list(borders), "at least the two ends of the rod are needed")
+        rising = all(a < b for a, b in pairwise(borders))
+        require(rising, key, list(borders), "borders must increase along the rod")
+        length = self.centre_line.length
+        ok = borders[0] == 0.0 and math.isclose(borders[-1], length, rel_tol=ROUNDED)
+        require(ok, key, f"{borders[0]:g} .. {borders[-1]:g}", f"borders must run from 0 to {length:g} mm")
+        rising = borders[-2] < length
+        require(rising, key, f"{borders[-2]:g} .. {borders[-1]:g}", f"the last border is the rod's end, {length:g} mm")
+        object.__setattr__(self, "element_borders", (*borders[:-1], length))
+        if isinstance(self.centre_line, Helix):
+            _require_roomy(self.centre_line, self.section, f"rods.{self.name}.centre_line")
+
+    @property
+    def length(self) -> float:
+        """Arc length of the centre line, mm."""
+        return self.centre_line.length
+
+
+def _require_roomy(helix: Helix, section: Section, key: str) -> None:
+    """See that the sections do not overlap on the inner side of the curve, where sqrt(g) must be positive."""
+    axis = np.asarray(helix.axis) / np.linalg.norm(helix.axis)
+    from_centre = np.subtract(helix.start, helix.centre)
+    inwards = -(from_centre - (from_centre @ axis) * axis) / helix.radius
+    tangent = np.asarray(helix.start_tangent)
+    e2 = np.asarray(helix.up) - (tangent @ np.asarray(helix.up)) * tangent
+    e2 /= np.linalg.norm(e2)
+    direction = np.array([inwards @ np.cross(e2, tangent), inwards @ e2])
+    reach = section_reach(section, direction)
+    advance = helix.pitch / (2.0 * math.pi)
+    radius = helix.radius * (1.0 + (advance / helix.radius) ** 2)
+    found = f"a radius of curvature of {radius:g} mm"
+    require(reach < radius, key, found, f"it must be larger than the section's {reach:g} mm on the inner side")
+
+
+@dataclass(frozen=True)
+class RodFace:
+    """A lateral face of a rod: top (y = +height/2), bottom, right (x = +width/2) or left."""
+
+    rod: str
+    face: Face
+
+
+@dataclass(frozen=True)
+class RodEnd:
+    """One end of a rod."""
+
+    rod: str
+    end: End
+
+
+Placed = TypeVar("Placed")
+
+
+def not_beyond_end(placed: Placed, rod: Rod) -> Placed:
+    """A load, support or bed, set to the end of a curved rod where it was written there with a rounded length."""
+    if isinstance(rod.centre_line, Line):
+        return placed
+    for name in ("position", "end"):
+        place = getattr(placed, name, None)
+        if isinstance(place, float) and math.isclose(place, rod.length, rel_tol=ROUNDED):
+            return replace(placed, **{name: rod.length})  # type: ignore[type-var]
+    return placed
+
+
+def require_flat_face(rod: Rod, face: Face, key: str) -> None:
+    """Raise a SceneError unless the rod has flat faces and this is one of them."""
+    require(face in FACES, f"{key}.face", f"'{face}'", f"write one of {', '.join(FACES)}")
+    found = f"'{rod.name}', whose section is a {type(rod.section).__name__.lower()}"
+    require(isinstance(rod.section, Rectangle | Box), f"{key}.rod", found, "rectangles and boxes have flat faces")
+
+
+def require_on_rod(position: float, rod: Rod, key: str) -> None:
+    """Raise a SceneError unless the arc length lies on the rod."""
+    ok = 0.0 <= position <= rod.length * (1.0 + 1e-9)
+    require(ok, key, f"{position:g}", f"rod '{rod.name}' runs from 0 to {rod.length:g} mm")
+
+
+def require_stretch(start: float, end: float, rod: Rod, key: str) -> None:
+    """Raise a SceneError unless the arc lengths rise and lie on the rod."""
+    ok = 0.0 <= start < end <= rod.length * (1.0 + 1e-9)
+    remedy = f"a rising stretch is needed; rod '{rod.name}' runs from 0 to {rod.length:g} mm"
+    require(ok, key, f"{start:g} .. {end:g}", remedy)
