@@ -22,6 +22,7 @@ from reports.processes import ProcessFailed, Progress, in_own_process
 from reports.quantities import DEFINITIONS
 from reports.result import result
 from reports.runner import ROD_REPEATS, CaseRun, Failure, Run
+from reports.section_table import section_table
 from reports.sketch import scene_sketch
 from reports.store import write_whole
 from reports.truth import independent_values
@@ -186,6 +187,7 @@ def _case(run: CaseRun, anchor: str, picture: DrawnPicture) -> tuple[dict[str, A
         "picture": picture if picture.data else None,
         "no_picture": picture.problem,
         "checks": _check_groups(run.comparisons),
+        "sections": section_table(case.scene.rods),
         "costs": [_cost_row(solver, answer) for solver, answer in _solvers(run)],
     }
     return content, figures

@@ -26,6 +26,7 @@ from cases.scene import (
     SectionForce,
     SectionMoment,
 )
+from rodmodel.section_properties import SectionProperties, section_properties
 from rodmodel.solution import ContactPoints, Cost, Solution
 from rodmodel.solver import solve
 
@@ -50,6 +51,8 @@ __all__ = [
     "SceneError",
     "SectionForce",
     "SectionMoment",
+    "SectionProperties",
     "Solution",
+    "section_properties",
     "solve",
 ]
