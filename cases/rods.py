@@ -9,7 +9,7 @@ from typing import Literal, TypeVar
 
 import numpy as np
 
-from cases.centre_lines import CentreLine, Helix, Line
+from cases.centre_lines import CentreLine, Line, Path, curvatures
 from cases.checks import require
 from cases.materials import Material, Orthotropic
 from cases.sections import Box, Rectangle, Section, section_reach
@@ -32,7 +32,8 @@ class Rod:
     ----------
     name : how supports, loads and contacts call it
     element_borders : borders of the rod model's elements, arc length from the rod's start, mm; the first is
-        0, the last the rod's length, which it is set to where it was rounded
+        0, the last the rod's length, which it is set to where it was rounded; likewise those between the pieces of
+        a path
     """
 
     name: str
@@ -52,9 +53,13 @@ class Rod:
         require(ok, key, f"{borders[0]:g} .. {borders[-1]:g}", f"borders must run from 0 to {length:g} mm")
         rising = borders[-2] < length
         require(rising, key, f"{borders[-2]:g} .. {borders[-1]:g}", f"the last border is the rod's end, {length:g} mm")
-        object.__setattr__(self, "element_borders", (*borders[:-1], length))
-        if isinstance(self.centre_line, Helix):
-            _require_roomy(self.centre_line, self.section, f"rods.{self.name}.centre_line")
+        borders = (*borders[:-1], length)
+        if isinstance(self.centre_line, Path):
+            borders = _on_piece_borders(borders, self.centre_line)
+            rising = all(a < b for a, b in pairwise(borders))
+            require(rising, key, list(self.element_borders), "name the border between two pieces once")
+        object.__setattr__(self, "element_borders", borders)
+        _require_roomy(self.centre_line, self.section, f"rods.{self.name}.centre_line")
 
     @property
     def length(self) -> float:
@@ -62,20 +67,29 @@ class Rod:
         return self.centre_line.length
 
 
-def _require_roomy(helix: Helix, section: Section, key: str) -> None:
+def _on_piece_borders(borders: tuple[float, ...], path: Path) -> tuple[float, ...]:
+    """Borders of elements, those written with rounded lengths set to the borders of the path's pieces."""
+    nearest = [min(path.borders, key=lambda at: abs(at - border)) for border in borders]
+    slack = ROUNDED * path.length
+    return tuple(at if abs(at - border) <= slack else border for at, border in zip(nearest, borders, strict=True))
+
+
+def _require_roomy(line: CentreLine, section: Section, key: str) -> None:
     """See that the sections do not overlap on the inner side of the curve, where sqrt(g) must be positive."""
-    axis = np.asarray(helix.axis) / np.linalg.norm(helix.axis)
-    from_centre = np.subtract(helix.start, helix.centre)
-    inwards = -(from_centre - (from_centre @ axis) * axis) / helix.radius
-    tangent = np.asarray(helix.start_tangent)
-    e2 = np.asarray(helix.up) - (tangent @ np.asarray(helix.up)) * tangent
-    e2 /= np.linalg.norm(e2)
-    direction = np.array([inwards @ np.cross(e2, tangent), inwards @ e2])
-    reach = section_reach(section, direction)
-    advance = helix.pitch / (2.0 * math.pi)
-    radius = helix.radius * (1.0 + (advance / helix.radius) ** 2)
-    found = f"a radius of curvature of {radius:g} mm"
-    require(reach < radius, key, found, f"it must be larger than the section's {reach:g} mm on the inner side")
+    for start, piece in zip(line.borders, line.pieces, strict=False) if isinstance(line, Path) else ((0.0, line),):
+        stations, bends = curvatures(piece)
+        sizes = np.linalg.norm(bends, axis=1)
+        reaches = [
+            section_reach(section, bend / size) if size else 0.0 for bend, size in zip(bends, sizes, strict=True)
+        ]
+        if not reaches:
+            continue
+        tightest = int(np.argmax(reaches * sizes))
+        reach, curvature = reaches[tightest], float(sizes[tightest])
+        where = f" at s = {start + stations[tightest]:.3g} mm" if len(stations) > 1 else ""
+        found = f"a radius of curvature of {1.0 / curvature if curvature else math.inf:g} mm{where}"
+        remedy = f"it must be larger than the section's {reach:g} mm on the inner side"
+        require(reach * curvature < 1.0, key, found, remedy)
 
 
 @dataclass(frozen=True)

@@ -16,7 +16,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from cases.centre_lines import CentreLine, Helix, Line
+from cases.centre_lines import CentreLine, Helix, Line, Path, Spline
 from cases.checks import SceneError, Vector, require, require_positive
 from cases.contacts import ContactPair, face_geometry, require_facing
 from cases.loads import Gravity, LineLoad, Load, Pressure, SectionForce, SectionMoment, check_load
@@ -45,6 +45,7 @@ __all__ = [
     "Load",
     "Material",
     "Orthotropic",
+    "Path",
     "Polygon",
     "Pressure",
     "Rectangle",
@@ -57,6 +58,7 @@ __all__ = [
     "Section",
     "SectionForce",
     "SectionMoment",
+    "Spline",
     "Support",
     "Vector",
     "section_reach",
