@@ -14,7 +14,7 @@ from reference3d.frames import pair_overlap, rod_frame
 from reference3d.grading import Borders, rod_borders
 from reference3d.mesh import box_mesh
 from reference3d.quadratic import line_nodes, nodal_weights
-from reference3d.scope import forces, isotropic, rectangle
+from reference3d.scope import clamps, forces, isotropic, rectangle
 
 Array = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
@@ -56,7 +56,7 @@ def discretise(scene: Scene, rod: Rod, refinement: int, symmetric: bool) -> Body
     x, y, s = (line_nodes(axis) for axis in (borders.x, borders.y, borders.s))
     fixed = np.zeros((len(s), len(y), len(x), 3), dtype=bool)
     fixed[:, :, 0, 0] = symmetric
-    clamped = {support.end for support in scene.supports if support.rod == rod.name}
+    clamped = {clamp.end for clamp in clamps(scene) if clamp.rod == rod.name}
     fixed[0] |= "start" in clamped
     fixed[-1] |= "end" in clamped
     in_plane = np.ones((len(y), len(x), 3), dtype=bool)

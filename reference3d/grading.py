@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from cases.scene import LineLoad, Rod, Scene
 from reference3d.frames import pair_overlap
-from reference3d.scope import forces, rectangle
+from reference3d.scope import clamps, forces, rectangle
 
 Array = NDArray[np.float64]
 
@@ -69,9 +69,9 @@ def rod_borders(scene: Scene, rod: Rod, refinement: int, symmetric: bool) -> Bor
         near = next((place for place in breaks if abs(place - position) < 1e-7 * rod.length), position)
         breaks[near] = min(size, breaks.get(near, np.inf))
 
-    for support in scene.supports:
-        if support.rod == rod.name:
-            add(0.0 if support.end == "start" else rod.length, CLAMP_CELL * side)
+    for clamp in clamps(scene):
+        if clamp.rod == rod.name:
+            add(0.0 if clamp.end == "start" else rod.length, CLAMP_CELL * side)
     for load in forces(scene):
         if load.rod != rod.name:
             continue

@@ -1,25 +1,56 @@
-"""What the 3D reference can mesh and load so far: straight, untwisted rods of rectangular section under forces."""
+"""What the 3D reference can mesh, hold and load so far: straight, untwisted rods of rectangular section, clamped and
+under forces.
+"""
 
 from __future__ import annotations
 
-from cases.scene import Line, LineLoad, Material, Rectangle, Rod, Scene, SceneError, SectionForce
+from cases.scene import (
+    Clamp,
+    Gravity,
+    Helix,
+    Line,
+    LineLoad,
+    Load,
+    Material,
+    Pressure,
+    Rectangle,
+    Rod,
+    Scene,
+    SceneError,
+    SectionForce,
+    SectionMoment,
+)
 
 INSTEAD = "yet; use --model rod"
 
+# What a load is called that is not a force, and what keeps it from being taken.
+_OTHER_LOADS: dict[type[Load], tuple[str, str]] = {
+    SectionMoment: ("a section moment", f"the 3D reference does not spread moments over a mesh {INSTEAD}"),
+    Pressure: ("a pressure", f"the 3D reference does not load faces {INSTEAD}"),
+    Gravity: ("gravity", f"the 3D reference does not load volumes {INSTEAD}"),
+}
+
 
 def require_treatable(scene: Scene) -> None:
-    """Refuse what cannot be meshed or loaded.
+    """Refuse what cannot be meshed, held or loaded.
 
     Raises
     ------
     SceneError
-        if a rod is curved, twisted, not isotropic or not of rectangular section, or a load is a moment.
+        if a rod is curved, twisted, not isotropic or not of rectangular section, a support is not a clamp at rest,
+        a load is not a force, or there is a joint or a bed.
     """
     for rod in scene.rods:
         straight_line(rod)
         rectangle(rod)
         isotropic(rod)
+    clamps(scene)
     forces(scene)
+    if scene.joints:
+        remedy = f"the 3D reference does not join rods {INSTEAD}"
+        raise SceneError("joints", f"{len(scene.joints)}", remedy)
+    if scene.beds:
+        raise SceneError("beds", f"{len(scene.beds)}", f"the 3D reference does not lay rods on beds {INSTEAD}")
 
 
 def straight_line(rod: Rod) -> Line:
@@ -27,7 +58,9 @@ def straight_line(rod: Rod) -> Line:
     line = rod.centre_line
     if isinstance(line, Line) and line.twist == 0.0:
         return line
-    found = "a twisted line" if isinstance(line, Line) else "an arc" if line.pitch == 0.0 else "a helix"
+    found = "a twisted line" if isinstance(line, Line) else f"a {type(line).__name__.lower()}"
+    if isinstance(line, Helix) and line.pitch == 0.0:
+        found = "an arc"
     raise SceneError(
         f"rods.{rod.name}.centre_line", found, f"the 3D reference does not mesh curved or twisted rods {INSTEAD}"
     )
@@ -49,12 +82,27 @@ def isotropic(rod: Rod) -> Material:
     raise SceneError(f"rods.{rod.name}.material", "an orthotropic material", remedy)
 
 
+def clamps(scene: Scene) -> tuple[Clamp, ...]:
+    """The supports of a scene, seen to be clamps at rest; SceneError if there is another among them."""
+    found: list[Clamp] = []
+    for number, support in enumerate(scene.supports, 1):
+        if not isinstance(support, Clamp):
+            remedy = f"the 3D reference holds whole end sections alone {INSTEAD}"
+            raise SceneError(f"supports #{number}.kind", "a support of components", remedy)
+        for key, motion in (("displacement", support.displacement), ("rotation", support.rotation)):
+            if any(motion):
+                remedy = f"the 3D reference does not move clamps {INSTEAD}"
+                raise SceneError(f"supports #{number}.{key}", str(list(motion)), remedy)
+        found.append(support)
+    return tuple(found)
+
+
 def forces(scene: Scene) -> tuple[SectionForce | LineLoad, ...]:
-    """The loads of a scene, seen to be forces; SceneError if there is a moment among them."""
+    """The loads of a scene, seen to be forces; SceneError if there is another among them."""
     found: list[SectionForce | LineLoad] = []
     for number, load in enumerate(scene.loads, 1):
         if not isinstance(load, SectionForce | LineLoad):
-            remedy = f"the 3D reference does not spread moments over a mesh {INSTEAD}"
-            raise SceneError(f"loads #{number}.kind", "a section moment", remedy)
+            kind, remedy = _OTHER_LOADS[type(load)]
+            raise SceneError(f"loads #{number}.kind", kind, remedy)
         found.append(load)
     return tuple(found)

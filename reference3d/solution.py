@@ -7,11 +7,12 @@ the scene's symmetry plane halved the computation. `solver` makes it.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NoReturn
 
 import numpy as np
 from numpy.typing import NDArray
 
-from cases.scene import ContactPair, End, Rod, Scene
+from cases.scene import ContactPair, Rod, Scene
 from reference3d.field import Field, displacement, section_resultants, stress
 from reference3d.frames import face_frame, rod_frame
 from reference3d.quadratic import nodal_weights
@@ -134,9 +135,24 @@ class Solution:
         """N, Q1, Q2, M1, M2, T of the finite element stress, N and N mm, shape (6, n)."""
         return section_resultants(self.rods[rod].field, isotropic(self.rods[rod].rod), station)
 
-    def reaction(self, rod: str, end: End) -> Array:
-        """Force and moment of the support on the rod, global, shape (6,); zero where there is no support."""
-        return np.asarray(self.rods[rod].reaction[0 if end == "start" else 1])
+    def reaction(self, rod: str, station: float) -> Array:
+        """Force (N) and moment (N mm) of the clamp at an end on the rod, global, shape (6,); zero at a free end.
+
+        station : 0 or the rod's length, mm
+
+        Raises
+        ------
+        ValueError
+            if the station is not an end of the rod.
+        """
+        length = self.rods[rod].rod.length
+        if station not in (0.0, length):
+            raise ValueError(f"station: found {station:g}; clamps are at 0 and at {length:g} mm")
+        return np.asarray(self.rods[rod].reaction[0 if station == 0.0 else 1])
+
+    def bed_forces(self, bed: int, borders: Array) -> NoReturn:
+        """No scene with beds is solved (`scope`), so that there is none to answer for: IndexError."""
+        raise IndexError(f"bed: found {bed}; the scene has none")
 
     def contact_points(self, pair: str) -> ContactPoints:
         """State of every contact node of a pair."""

@@ -20,7 +20,7 @@ from reference3d.factor import solve as solve_layers
 from reference3d.field import Field, mirrored
 from reference3d.frames import is_symmetric, rod_frame
 from reference3d.quadratic import line_nodes
-from reference3d.scope import isotropic, rectangle, require_treatable
+from reference3d.scope import clamps, isotropic, rectangle, require_treatable
 from reference3d.solution import Cost, PairResult, RodResult, Solution
 
 Array = NDArray[np.float64]
@@ -86,7 +86,7 @@ def solve(scene: Scene, refinement: int = DEFAULT_REFINEMENT, located: Solution 
 
 
 def _require_support(scene: Scene) -> None:
-    clamped = {support.rod for support in scene.supports}
+    clamped = {clamp.rod for clamp in clamps(scene)}
     for rod in scene.rods:
         if rod.name not in clamped:
             found = f"no clamp on rod '{rod.name}'"
@@ -248,7 +248,7 @@ def _collect(
 
 def _support_reaction(scene: Scene, body: Body, nodal: Array, symmetric: bool, end: int) -> Array:
     """Force and moment about the section's centre that a clamp exerts on the rod, global, shape (6,)."""
-    clamped = {support.end for support in scene.supports if support.rod == body.rod.name}
+    clamped = {clamp.end for clamp in clamps(scene) if clamp.rod == body.rod.name}
     if ("start" if end == 0 else "end") not in clamped:
         return np.zeros(6)
     force = nodal[end]

@@ -12,7 +12,7 @@ from reports.solution import Array, Solution
 AXES = ("X", "Y", "Z")
 
 
-def station_of(solution: Solution, rod: str, points: Array) -> Array:
+def stations_of_points(solution: Solution, rod: str, points: Array) -> Array:
     """Arc length of the sections of a straight rod that hold the given points, mm, shape (n,); points (3, n)."""
     origin, axes = solution.frame(rod, np.zeros(1))
     station: Array = axes[0, 2] @ (points - origin)
@@ -30,5 +30,5 @@ def contact_limits(solution: Solution, pair: ContactPair) -> tuple[float, float]
     second = solution.scene.rod(pair.second.rod)
     ends, axes = solution.frame(second.name, np.array([0.0, second.length]))
     corners = ends[:, :, None] + np.einsum("nai,ca->inc", axes[:, :2], outline(second.section))
-    extent = station_of(solution, pair.first.rod, corners.reshape(3, -1))
+    extent = stations_of_points(solution, pair.first.rod, corners.reshape(3, -1))
     return max(pair.zone[0], float(extent.min())), min(pair.zone[1], float(extent.max()))

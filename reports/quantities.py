@@ -12,9 +12,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from cases.scene import ContactPair, End, Helix, Rod, Vector
+from cases.scene import Clamp, ContactPair, Helix, Rod, Vector
+from reports.applied_forces import AppliedForces, applied_forces, reactions
 from reports.contact_edges import contact_stretches, edge_resolution
-from reports.equilibrium import AppliedForces, applied_forces, equilibrium_residual, equilibrium_resultants
+from reports.equilibrium import equilibrium_residual, equilibrium_resultants
 from reports.geometry import contact_limits, pair_axis
 from reports.sections import section_modulus
 from reports.solution import Array, ContactProfile, Solution
@@ -69,8 +70,8 @@ DEFINITIONS: Mapping[str, Definition] = {
     "bending_moment": Definition(
         "Bending moment",
         "N mm",
-        "M1 = integral of sigma_s y over the section, from equilibrium of loads and contact forces (and of "
-        "the reaction, where a rod is held at both ends).",
+        "M1 = integral of sigma_s y over the section, from equilibrium of all that acts on the rod on one side of "
+        "it: loads, contact forces, beds, and the reactions on that side, which is the one with fewer of them.",
     ),
     "bending_moment_stress": Definition(
         "Bending moment from stress",
@@ -101,9 +102,10 @@ DEFINITIONS: Mapping[str, Definition] = {
     "equilibrium_residual": Definition(
         "Equilibrium residual",
         "",
-        "Largest unbalanced force, or moment about a rod's start over its length, of the loads, contact "
-        "forces and reactions on any rod, relative to the sum of the loads' magnitudes (line loads by their "
-        "resultants, moments over the rod's length).",
+        "Largest unbalanced force, or moment about a rod's start over its length, of the loads, contact and bed "
+        "forces and reactions on any rod, and of the reactions at any joint; relative to the sum of the loads' "
+        "magnitudes (distributed ones in all, moments over the rod's length), or to the largest reaction where that "
+        "is larger, as where supports are moved without any load.",
     ),
     "stress_residual": Definition(
         "Moment residual",
@@ -199,7 +201,8 @@ class Quantities:
     ----------
     outcome : the solver's: 'converged', or why not
     point_stresses : sigma_s at stated points, by rod and (x, y, s), MPa
-    reactions : force (N) and moment (N mm) of each support on its rod, global, shape (6,) each
+    reactions : force (N) and moment (N mm) of each support and joint on its rods, by rod and arc length (mm),
+        global, shape (6,) each
     equilibrium_residual : see `DEFINITIONS`
     setup_seconds, solve_seconds : the solver's own, disjoint
     """
@@ -208,7 +211,7 @@ class Quantities:
     contacts: tuple[ContactQuantities, ...]
     rods: tuple[RodQuantities, ...]
     point_stresses: Mapping[tuple[str, Vector], float]
-    reactions: Mapping[tuple[str, End], Array]
+    reactions: Mapping[tuple[str, float], Array]
     strain_energy: float
     equilibrium_residual: float
     unknowns: int
@@ -256,7 +259,8 @@ def evaluate(
     scene = solution.scene
     extra = stations or {}
     at = {rod.name: merged_stations(rod, extra.get(rod.name, np.empty(0))) for rod in scene.rods}
-    applied = {rod.name: applied_forces(solution, rod, at[rod.name]) for rod in scene.rods}
+    held = reactions(solution)
+    applied = {rod.name: applied_forces(solution, rod, at[rod.name], held) for rod in scene.rods}
     quantities = Quantities(
         outcome=solution.outcome,
         contacts=tuple(contact_quantities(solution, pair) for pair in scene.contacts),
@@ -264,9 +268,9 @@ def evaluate(
         point_stresses={
             (rod, point): float(stress_s(solution, rod, np.array([point]).T)[0]) for rod, point in stress_points
         },
-        reactions={(clamp.rod, clamp.end): solution.reaction(clamp.rod, clamp.end) for clamp in scene.supports},
+        reactions=held,
         strain_energy=float(solution.strain_energy),
-        equilibrium_residual=equilibrium_residual(scene, applied),
+        equilibrium_residual=equilibrium_residual(scene, applied, held),
         unknowns=solution.cost.unknowns,
         contact_solutions=solution.contact_solutions,
         setup_seconds=solution.cost.setup_seconds,
@@ -349,7 +353,11 @@ def rod_quantities(solution: Solution, rod: Rod, applied: AppliedForces, station
     """
     equilibrium = equilibrium_resultants(solution, rod, applied, station)
     stress = solution.section_resultants(rod.name, station)
-    clamped = [0 if clamp.end == "start" else -1 for clamp in solution.scene.supports if clamp.rod == rod.name]
+    clamped = [
+        0 if support.end == "start" else -1
+        for support in solution.scene.supports
+        if isinstance(support, Clamp) and support.rod == rod.name
+    ]
     end_moment_equilibrium = end_moment_stress = max_bending_stress = None
     if clamped:
         end = max(clamped, key=lambda index: abs(float(equilibrium[3, index])))

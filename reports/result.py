@@ -6,11 +6,14 @@ from typing import Annotated
 
 from pydantic import BaseModel, ConfigDict, Field
 
+from cases.case import Grades
 from reports.quantities import DEFINITIONS, ContactQuantities, Quantities, RodQuantities
 from reports.solution import Model
 
 Triple = Annotated[list[float], Field(min_length=3, max_length=3)]
 Stretch = Annotated[list[float], Field(min_length=2, max_length=2)]
+
+_GRADES = "{}; by rod one for each of its elements, where they differ; null for the reference."
 
 
 def _described(name: str) -> str:
@@ -56,6 +59,15 @@ class Contact(_Object):
     pressure: Pressure
 
 
+class Reaction(_Object):
+    """What a support or a joint exerts on a rod."""
+
+    rod: str = Field(description="Name of the rod in the case file.")
+    station: float = Field(description="Where it acts, arc length from the rod's start, mm.")
+    force: Triple = Field(description="Global components, N.")
+    moment: Triple = Field(description="About the centre of the section, global components, N mm.")
+
+
 class RodCurves(_Object):
     """Deflection and bending moment along one rod."""
 
@@ -76,8 +88,8 @@ class Result(_Object):
 
     case: str = Field(description="Name of the case.")
     model: str = Field(description="'rod' or 'reference'.", pattern="^(rod|reference)$")
-    level: int | None = Field(description="Level of the rod model; null for the reference.")
-    order: int | None = Field(description="Order along the axis; null for the reference.")
+    level: Grades | None = Field(description=_GRADES.format("Level of the rod model"))
+    order: Grades | None = Field(description=_GRADES.format("Order along the axis"))
     unknowns: int = Field(description="Unknowns carried in the solution.")
     converged: bool
     outcome: str = Field(description="'converged', or why not.")
@@ -87,13 +99,14 @@ class Result(_Object):
     equilibrium_residual: float = Field(description=_described("equilibrium_residual"))
     contacts: list[Contact]
     rods: dict[str, RodCurves]
+    reactions: list[Reaction]
 
 
 def result(
     case: str,
     model: Model,
-    level: int | None,
-    order: int | None,
+    level: Grades | None,
+    order: Grades | None,
     quantities: Quantities,
     total_seconds: float,
 ) -> Result:
@@ -118,6 +131,10 @@ def result(
         equilibrium_residual=quantities.equilibrium_residual,
         contacts=[_contact(contact) for contact in quantities.contacts],
         rods={rod.rod: _rod(rod) for rod in quantities.rods},
+        reactions=[
+            Reaction(rod=rod, station=station, force=found[:3].tolist(), moment=found[3:].tolist())
+            for (rod, station), found in quantities.reactions.items()
+        ],
     )
 
 

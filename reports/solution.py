@@ -12,7 +12,7 @@ from typing import Literal, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from cases.scene import End, Scene
+from cases.scene import Scene
 
 Array = NDArray[np.float64]
 
@@ -60,6 +60,24 @@ class ContactProfile(Protocol):
     def mean(self) -> Array: ...
     @property
     def outer(self) -> Array: ...
+
+
+class BedForces(Protocol):
+    """What a Winkler bed exerts on its rod, as forces at points.
+
+    Attributes
+    ----------
+    station : arc length of the sections in which they act, mm, shape (n,)
+    position : points of the undeformed face, global coordinates, mm, shape (3, n)
+    force : on the rod, global components, N, shape (3, n)
+    """
+
+    @property
+    def station(self) -> Array: ...
+    @property
+    def position(self) -> Array: ...
+    @property
+    def force(self) -> Array: ...
 
 
 class Cost(Protocol):
@@ -127,8 +145,19 @@ class Solution(Protocol):
         """
         ...
 
-    def reaction(self, rod: str, end: End) -> Array:
-        """Force (N) and moment about the section's centre (N mm) of the support on the rod, global, shape (6,)."""
+    def reaction(self, rod: str, station: float) -> Array:
+        """What the support or joint at an arc length (mm) exerts on the rod, global, shape (6,).
+
+        Force (N) and moment about the section's centre (N mm).
+        """
+        ...
+
+    def bed_forces(self, bed: int, borders: Array) -> BedForces:
+        """Forces of the scene's bed number `bed` (from 0) on its rod.
+
+        borders : arc lengths, mm, ascending, shape (n,); there are several points between every two of them, and
+            their sum is the bed's resultant there
+        """
         ...
 
     def contact_points(self, pair: str) -> ContactPoints:

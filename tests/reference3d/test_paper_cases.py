@@ -19,7 +19,7 @@ def contact_centre(solution):
 
 
 def clamp_moment(solution):
-    return float(abs(solution.reaction("upper", "end")[5]))
+    return float(abs(solution.reaction("upper", 300.0)[5]))
 
 
 def deflections(solution, truth):

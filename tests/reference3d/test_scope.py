@@ -7,17 +7,25 @@ import numpy as np
 import pytest
 
 from cases.scene import (
+    Bed,
     Box,
     Circle,
+    Clamp,
+    Gravity,
     Helix,
+    Joint,
     Line,
     LineLoad,
     Orthotropic,
     Polygon,
+    Pressure,
     Ring,
+    RodEnd,
+    RodFace,
     SceneError,
     SectionForce,
     SectionMoment,
+    Support,
 )
 from reference3d.solver import solve
 
@@ -69,14 +77,67 @@ def test_an_orthotropic_rod_is_refused(cantilever):
         solve(changed(cantilever((0.0, -100.0, 0.0)), material=wood))
 
 
-def test_a_moment_is_refused_and_not_left_out(cantilever):
+@pytest.mark.parametrize(
+    ("load", "found"),
+    [
+        (SectionMoment("rod", 300.0, (0.0, 0.0, 10.0)), "a section moment"),
+        (Pressure(RodFace("rod", "top"), 0.0, 300.0, 0.1), "a pressure"),
+        (Gravity("rod", (0.0, -9810.0, 0.0)), "gravity"),
+    ],
+)
+def test_other_loads_than_forces_are_refused_and_not_left_out(cantilever, load, found):
     scene = cantilever((0.0, -100.0, 0.0))
-    scene = replace(scene, loads=(*scene.loads, SectionMoment("rod", 300.0, (0.0, 0.0, 10.0))))
+    rod = replace(scene.rods[0], material=replace(scene.rods[0].material, density=7.85e-9))
+    scene = replace(scene, rods=(rod,), loads=(*scene.loads, load))
 
     with pytest.raises(SceneError) as caught:
         solve(scene)
 
-    assert caught.value.key == "loads #2.kind"
+    assert (caught.value.key, caught.value.found) == ("loads #2.kind", found)
+    assert "use --model rod" in caught.value.remedy
+
+
+@pytest.mark.parametrize(
+    ("support", "key"),
+    [
+        (Support("rod", 300.0, ("y",)), "supports #2.kind"),
+        (Clamp("rod", "end", displacement=(0.0, 0.5, 0.0)), "supports #2.displacement"),
+        (Clamp("rod", "end", rotation=(0.0, 0.0, 0.01)), "supports #2.rotation"),
+    ],
+)
+def test_other_supports_than_clamps_at_rest_are_refused(cantilever, support, key):
+    scene = cantilever((0.0, -100.0, 0.0))
+
+    with pytest.raises(SceneError, match=r"use --model rod") as caught:
+        solve(replace(scene, supports=(*scene.supports, support)))
+
+    assert caught.value.key == key
+
+
+def test_joints_are_refused(cantilever):
+    scene = cantilever((0.0, -100.0, 0.0))
+    beyond = Line((300.0, 0.0, 0.0), (600.0, 0.0, 0.0), (0.0, 1.0, 0.0))
+    other = replace(scene.rods[0], name="other", centre_line=beyond)
+    joint = Joint((RodEnd("rod", "end"), RodEnd("other", "start")))
+
+    with pytest.raises(SceneError, match=r"joints: found 1; the 3D reference does not join rods yet; use --model rod"):
+        solve(replace(scene, rods=(scene.rods[0], other), joints=(joint,)))
+
+
+def test_beds_are_refused(cantilever):
+    scene = cantilever((0.0, -100.0, 0.0))
+    bed = Bed(RodFace("rod", "bottom"), 0.0, 300.0, 1.0)
+
+    with pytest.raises(SceneError, match=r"beds: found 1; the 3D reference does not lay .* use --model rod"):
+        solve(replace(scene, beds=(bed,)))
+
+
+def test_there_are_reactions_at_the_ends_alone(cantilever):
+    solution = solve(cantilever((0.0, -100.0, 0.0), length=60.0), 1)
+
+    assert not solution.reaction("rod", 60.0).any()
+    with pytest.raises(ValueError, match="station: found 30; clamps are at 0 and at 60 mm"):
+        solution.reaction("rod", 30.0)
 
 
 def test_a_line_load_leaves_the_moment_of_its_resultant(cantilever):
@@ -86,7 +147,7 @@ def test_a_line_load_leaves_the_moment_of_its_resultant(cantilever):
     solution = solve(scene, 1)
 
     # 120 mm under 1 N/mm down and 2 N/mm along, about X = 0; equilibrium holds to round-off of nodal forces of 1e4 N
-    np.testing.assert_allclose(solution.reaction("rod", "start"), [-240, 120, 0, 0, 0, 120 * 180], atol=1e-5)
+    np.testing.assert_allclose(solution.reaction("rod", 0.0), [-240, 120, 0, 0, 0, 120 * 180], atol=1e-5)
     # without lateral contraction the axial force is statically determined in every section
     np.testing.assert_allclose(
         solution.section_resultants("rod", np.array([60.0, 180.0, 270.0]))[0], [240.0, 120.0, 0.0], atol=1e-6 * 240
@@ -112,7 +173,7 @@ def test_a_line_load_is_symmetric_only_if_it_acts_in_the_plane(cantilever):
 
     solution = solve(aside, 1)
 
-    np.testing.assert_allclose(solution.reaction("rod", "start")[:3], [0.0, 69.0, -30.0], atol=1e-6)
+    np.testing.assert_allclose(solution.reaction("rod", 0.0)[:3], [0.0, 69.0, -30.0], atol=1e-6)
 
 
 def test_the_frame_of_a_straight_rod_is_the_same_everywhere(cantilever):

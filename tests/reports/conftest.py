@@ -117,7 +117,7 @@ class BeamSolution:
         result[2] = self.section_resultants(rod, points[2])[3] * points[1] / INERTIA
         return result
 
-    def reaction(self, rod: str, end: End) -> Array:
+    def reaction(self, rod: str, station: float) -> Array:
         a, force = self._forces(rod)
         sign = 1.0 if self._clamp(rod) == "start" else -1.0
         return np.array([0.0, -force.sum(), 0.0, 0.0, 0.0, -sign * (a @ force)])

@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 from cases.scene import Clamp, Line, Material, Rectangle, Rod, Scene, SectionForce
-from reports.equilibrium import applied_forces, equilibrium_residual, equilibrium_resultants
+from reports.applied_forces import applied_forces, reactions
+from reports.equilibrium import equilibrium_residual, equilibrium_resultants
 from reports.quantities import DEFINITIONS, default_stations, evaluate, stress_residual, stress_s
 from reports.solution import Array, Solution
 
@@ -17,9 +18,9 @@ ROUND_OFF = 1e-9
 
 
 def residual(solution: Solution) -> float:
-    return equilibrium_residual(
-        solution.scene, {rod.name: applied_forces(solution, rod, default_stations(rod)) for rod in solution.scene.rods}
-    )
+    held = reactions(solution)
+    applied = {rod.name: applied_forces(solution, rod, default_stations(rod), held) for rod in solution.scene.rods}
+    return equilibrium_residual(solution.scene, applied, held)
 
 
 def test_contact_force_and_centre_are_the_resultant_and_its_place(
@@ -125,8 +126,8 @@ def test_equilibrium_residual_vanishes_for_a_solution_in_equilibrium(
 
 def test_equilibrium_residual_shows_a_wrong_reaction(beam_solution: Callable[..., Solution]) -> None:
     class OneNewtonShort(type(beam_solution())):  # type: ignore[misc]
-        def reaction(self, rod: str, end: str) -> Array:
-            return super().reaction(rod, end) - np.array([0.0, 1.0, 0.0, 0.0, 0.0, 0.0])
+        def reaction(self, rod: str, station: float) -> Array:
+            return super().reaction(rod, station) - np.array([0.0, 1.0, 0.0, 0.0, 0.0, 0.0])
 
     right = beam_solution()
     wrong = OneNewtonShort(right.scene, right.contact)
@@ -154,8 +155,8 @@ class HeldBothEnds:
         axes = np.array([[0.0, 0.0, -1.0], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0]])
         return np.outer(axes[2], station), np.tile(axes, (len(station), 1, 1))
 
-    def reaction(self, rod: str, end: str) -> Array:
-        return np.array([0.0, 40.0, 0.0, 0.0, 0.0, 2000.0 if end == "start" else -2000.0])
+    def reaction(self, rod: str, station: float) -> Array:
+        return np.array([0.0, 40.0, 0.0, 0.0, 0.0, 2000.0 if station == 0.0 else -2000.0])
 
 
 def test_a_rod_held_at_both_ends_takes_the_reaction_into_its_equilibrium() -> None:
@@ -163,7 +164,8 @@ def test_a_rod_held_at_both_ends_takes_the_reaction_into_its_equilibrium() -> No
 
     beam = solution.scene.rods[0]
     station = np.array([0.0, 50.0, 100.0, 200.0])
-    moment = equilibrium_resultants(solution, beam, applied_forces(solution, beam, station), station)[3]
+    applied = applied_forces(solution, beam, station, reactions(solution))
+    moment = equilibrium_resultants(solution, beam, applied, station)[3]
 
     # M1 > 0 where the top is in tension: + P L / 8 at both clamps, - P L / 8 under the load, 0 half way
     assert moment == pytest.approx([2000.0, 0.0, -2000.0, 2000.0], abs=ROUND_OFF * 2000.0)
@@ -188,11 +190,12 @@ def test_all_six_resultants_of_a_tip_force_in_local_components() -> None:
             axes = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
             return np.array([[1.0], [2.0], [3.0]]) + np.outer(axes[2], station), np.tile(axes, (len(station), 1, 1))
 
-        def reaction(self, rod: str, end: str) -> Array:
+        def reaction(self, rod: str, station: float) -> Array:
             return np.array([-3.0, -5.0, -7.0, 500.0, -300.0, 0.0])
 
     station = np.array([0.0, 40.0, 100.0])
-    resultants = equilibrium_resultants(Held(), rod, applied_forces(Held(), rod, station), station)
+    applied = applied_forces(Held(), rod, station, reactions(Held()))
+    resultants = equilibrium_resultants(Held(), rod, applied, station)
 
     axial, shear_1, shear_2, moment_1, moment_2, torque = resultants
     assert axial == pytest.approx([7.0, 7.0, 7.0])
