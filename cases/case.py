@@ -59,18 +59,23 @@ QUANTITIES: Mapping[Quantity, QuantityKind] = {
 }
 
 
+# A level or an order: the same everywhere, or by the name of every rod one for each element.
+Grades = int | Mapping[str, tuple[int, ...]]
+
+
 @dataclass(frozen=True)
 class RodModelSettings:
     """How the rod model solves the case.
 
     Parameters
     ----------
-    level : k of h_k, the degree of the polynomials over the section
-    order : p, the order of the shape functions along the rod
+    level : k of h_k, the degree of the polynomials over the section; by rod name, one for each element, where they
+        differ
+    order : p, the order of the shape functions along the rod; likewise
     """
 
-    level: int
-    order: int
+    level: Grades
+    order: Grades
 
 
 @dataclass(frozen=True)

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Literal
 if TYPE_CHECKING:
     import pint
 
-Unit = Literal["mm", "N", "MPa", "N mm", "N/mm", "N/mm^3", "rad", "%"]
+Unit = Literal["mm", "N", "MPa", "N mm", "N/mm", "N/mm^3", "t/mm^3", "mm/s^2", "rad", "%"]
 
 # Beyond any length, force or stress, and far from where their products overflow.
 LARGEST = 1e30
@@ -28,9 +28,14 @@ EXAMPLES: dict[Unit, tuple[str, str]] = {
     "N mm": ("a moment", '1000 (N mm) or "1 N m"'),
     "N/mm": ("a force per length", '2 (N/mm) or "2 kN/m"'),
     "N/mm^3": ("a stress per length", '1e6 (N/mm^3) or "1e6 N/mm^3"'),
+    "t/mm^3": ("a density with its unit", '"7850 kg/m^3"'),
+    "mm/s^2": ("an acceleration with its unit", '"9.81 m/s^2"'),
     "rad": ("an angle", '1.5708 (rad) or "90 deg"'),
     "%": ("a relative tolerance", '"0.1 %"'),
 }
+
+# A bare number of these could be meant in another unit: 0.1 as 10 %, 7850 in kg/m^3, 9.81 in m/s^2.
+NEVER_BARE: frozenset[Unit] = frozenset({"%", "t/mm^3", "mm/s^2"})
 
 # These have no dimension, but neither have mm/m: only their own signs count.
 _SIGNS: dict[Unit, tuple[str, ...]] = {"%": ("%", "percent"), "rad": ("rad", "radian", "deg", "degree")}
@@ -46,6 +51,7 @@ tera- = 1e12 = T-
 meter = [length] = m = metre
 inch = 0.0254 * meter = in
 gram = [mass] = g
+tonne = 1e6 * gram = t
 second = [time] = s
 newton = 1000 * gram * meter / second ** 2 = N
 pound_force = 4.4482216152605 * newton = lbf
@@ -107,8 +113,8 @@ def to_unit(value: object, wanted: Unit) -> float:
 
     Parameters
     ----------
-    value : a number, taken to be in `wanted` already, or a string of a number and a unit; a percentage must
-        be a string, since 0.1 could be meant either way
+    value : a number, taken to be in `wanted` already, or a string of a number and a unit; a string alone where
+        `wanted` is `NEVER_BARE`, unless the number is 0
 
     Returns
     -------
@@ -129,7 +135,7 @@ def to_unit(value: object, wanted: Unit) -> float:
             raise UnitError(remedy)
         number = float(Decimal(match["number"]) * factor)
         number = number / 100.0 if wanted == "%" else number
-    elif isinstance(value, (int, float)) and not isinstance(value, bool) and wanted != "%":
+    elif isinstance(value, (int, float)) and not isinstance(value, bool) and (value == 0 or wanted not in NEVER_BARE):
         try:
             number = float(value)
         except OverflowError:

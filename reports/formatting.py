@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
-from cases.case import QUANTITIES, Quantity
+from cases.case import QUANTITIES, Grades, Quantity
 from reports.comparison import Comparison, Kind
 from reports.quantities import DEFINITIONS
 from reports.solution import Model
@@ -32,6 +32,14 @@ def number(value: float | None, digits: int = 6) -> str:
         decimals = max(0, digits - len(str(int(magnitude))))
     text = f"{value:.{decimals}f}"
     return text.replace("-", "\u2212")
+
+
+def grades(level_or_order: Grades | None) -> str:
+    """A level or order of the rod model: one number, or from the lowest to the highest of the elements."""
+    if not isinstance(level_or_order, Mapping):
+        return str(level_or_order)
+    each = [grade for rod in level_or_order.values() for grade in rod]
+    return f"{min(each)}" if min(each) == max(each) else f"{min(each)} to {max(each)}"
 
 
 def stretches(edges: Sequence[float]) -> str:

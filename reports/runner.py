@@ -14,7 +14,7 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 
-from cases.case import Case
+from cases.case import Case, Grades
 from cases.scene import SceneError
 from reports.case_comparison import case_comparisons, comparisons_without_reference, evaluation_points
 from reports.comparison import Comparison, Extrapolation
@@ -40,8 +40,8 @@ class Run:
     """
 
     model: Model
-    level: int | None
-    order: int | None
+    level: Grades | None
+    order: Grades | None
     quantities: Quantities
     total_seconds: float
     peak_memory: float
@@ -82,13 +82,13 @@ def run_rod(case: Case, level: int | None = None, order: int | None = None, repe
     """
     import rodmodel
 
-    level = case.rod_model.level if level is None else level
-    order = case.rod_model.order if order is None else order
+    levels = case.rod_model.level if level is None else level
+    orders = case.rod_model.order if order is None else order
     points = evaluation_points(case)
     runs = []
     for _ in range(repeats):
         begin = time.perf_counter()
-        solution = rodmodel.solve(case.scene, level=level, order=order)
+        solution = rodmodel.solve(case.scene, level=levels, order=orders)
         quantities = evaluate(solution, points.stations, points.stress_points)
         runs.append((quantities, time.perf_counter() - begin))
     quantities = replace(
@@ -97,7 +97,7 @@ def run_rod(case: Case, level: int | None = None, order: int | None = None, repe
         solve_seconds=statistics.median(quantities.solve_seconds for quantities, _ in runs),
     )
     total = statistics.median(seconds for _, seconds in runs)
-    return Run("rod", level, order, quantities, total, _peak_memory())
+    return Run("rod", levels, orders, quantities, total, _peak_memory())
 
 
 def run_reference(case: Case) -> Run:

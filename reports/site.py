@@ -16,7 +16,7 @@ import plotly.graph_objects as go
 
 from reports.comparison import Comparison
 from reports.figures import deflection_figure, moment_figure, pressure_figure
-from reports.formatting import MODEL_NAMES, measure, number, seconds, stretches, title, values_with_unit
+from reports.formatting import MODEL_NAMES, grades, measure, number, seconds, stretches, title, values_with_unit
 from reports.html import rendered
 from reports.processes import ProcessFailed, Progress, in_own_process
 from reports.quantities import DEFINITIONS
@@ -180,8 +180,8 @@ def _case(run: CaseRun, anchor: str, picture: DrawnPicture) -> tuple[dict[str, A
         "warnings": warnings,
         "sketch": scene_sketch(case.scene, run.rod.quantities),
         "sketch_caption": _sketch_caption(case.scene.contacts),
-        "level": run.rod.level,
-        "order": run.rod.order,
+        "level": grades(run.rod.level),
+        "order": grades(run.rod.order),
         "published": [_row(found) for found in run.comparisons if found.kind == "published"],
         "figures": places,
         "picture": picture if picture.data else None,
@@ -203,7 +203,7 @@ def _sketch_caption(contacts: Sequence[Any]) -> str:
 
 
 def _solvers(run: CaseRun) -> list[tuple[str, Run]]:
-    rod = (f"Rod model h{run.rod.level}, p = {run.rod.order}", run.rod)
+    rod = (f"Rod model h{grades(run.rod.level)}, p = {grades(run.rod.order)}", run.rod)
     meshes = [(f"3D, mesh {index} of {len(run.references)}", answer) for index, answer in enumerate(run.references, 1)]
     return [rod, *meshes]
 

@@ -12,6 +12,7 @@ from reports.comparison import Verdict
 from reports.formatting import (
     KIND_NAMES,
     MODEL_NAMES,
+    grades,
     measure,
     number,
     seconds,
@@ -40,7 +41,7 @@ def _cost(run: Run) -> str:
 
 
 def _model(run: Run) -> str:
-    return f"rod model h{run.level}, p = {run.order}" if run.model == "rod" else "3D reference"
+    return f"rod model h{grades(run.level)}, p = {grades(run.order)}" if run.model == "rod" else "3D reference"
 
 
 def print_run(case: Case, run: Run) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from reports.formatting import measure, number, seconds, stretches
+from reports.formatting import grades, measure, number, seconds, stretches
 
 
 @pytest.mark.parametrize(
@@ -31,6 +31,11 @@ def test_relative_quantities_are_measured_in_per_cent_and_others_in_their_unit()
 def test_stretches_are_read_as_from_and_to() -> None:
     assert stretches([200.0, 221.664, 240.0, 250.0]) == "200.00 to 221.66, 240.00 to 250.00"
     assert stretches([]) == "none"
+
+
+def test_levels_that_differ_are_told_from_the_lowest_to_the_highest() -> None:
+    assert grades(5) == grades({"lower": (5, 5)}) == "5"
+    assert grades({"lower": (3, 4), "upper": (2, 6)}) == "2 to 6"
 
 
 def test_durations_have_the_unit_that_suits_them() -> None:
