@@ -8,6 +8,9 @@ import numpy as np
 
 from cases.checks import Vector, require, require_finite, require_positive
 
+# Four times the density of osmium, t/mm^3: beyond it, a density was given in another unit.
+DENSEST = 1e-7
+
 
 @dataclass(frozen=True)
 class Material:
@@ -71,3 +74,5 @@ class Orthotropic:
 def _require_density(density: float | None) -> None:
     if density is not None:
         require_positive(density, "density", "a density")
+        remedy = "no material is denser than 1e-7 t/mm^3; steel has 7.85e-9 t/mm^3, which is 7850 kg/m^3"
+        require(density <= DENSEST, "density", f"{density:g} t/mm^3", remedy)

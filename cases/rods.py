@@ -9,7 +9,7 @@ from typing import Literal, TypeVar
 
 import numpy as np
 
-from cases.centre_lines import CentreLine, Line, Path, curvatures
+from cases.centre_lines import CentreLine, Path, curvatures
 from cases.checks import require
 from cases.materials import Material, Orthotropic
 from cases.sections import Box, Rectangle, Section, section_reach
@@ -20,7 +20,7 @@ Face = Literal["top", "bottom", "left", "right"]
 ENDS: tuple[End, ...] = ("start", "end")
 FACES: tuple[Face, ...] = ("top", "bottom", "left", "right")
 
-# The length of a curved rod is written down with finitely many digits.
+# The length of a curved or inclined rod is written down with finitely many digits.
 ROUNDED = 1e-4
 
 
@@ -112,9 +112,7 @@ Placed = TypeVar("Placed")
 
 
 def not_beyond_end(placed: Placed, rod: Rod) -> Placed:
-    """A load, support or bed, set to the end of a curved rod where it was written there with a rounded length."""
-    if isinstance(rod.centre_line, Line):
-        return placed
+    """A load, support or bed, set to the end of the rod where it was written there with a rounded length."""
     for name in ("position", "end"):
         place = getattr(placed, name, None)
         if isinstance(place, float) and math.isclose(place, rod.length, rel_tol=ROUNDED):

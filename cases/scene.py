@@ -70,7 +70,7 @@ __all__ = [
 class Scene:
     """Rods with everything that acts on them.
 
-    A load at the end of a curved rod, written with the rounded length, is set to that end.
+    A load, support or bed at the end of a rod, written with the rounded length, is set to that end.
 
     Raises
     ------
@@ -98,7 +98,7 @@ class Scene:
         loads = []
         for number, load in enumerate(self.loads, 1):
             key = f"loads #{number}"
-            rod = self._rod_at(f"{key}.rod", load.rod)
+            rod = self._rod_at(f"{key}.face.rod" if isinstance(load, Pressure) else f"{key}.rod", load.rod)
             loads.append(not_beyond_end(load, rod))
             check_load(loads[-1], rod, key)
         object.__setattr__(self, "loads", tuple(loads))
@@ -136,7 +136,7 @@ class Scene:
         places = []
         for number, end in enumerate(joint.ends, 1):
             rod = self._rod_at(f"{key} #{number}.rod", end.rod)
-            require(end.end in ENDS, f"{key} #{number}.end", end.end, "write 'start' or 'end'")
+            require(end.end in ENDS, f"{key} #{number}.end", f"'{end.end}'", "write 'start' or 'end'")
             again = end in joined or joint.ends.count(end) > 1
             require(not again, f"{key} #{number}", f"{end.rod} {end.end} again", "join an end once")
             at = 0.0 if end.end == "start" else rod.length

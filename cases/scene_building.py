@@ -21,6 +21,7 @@ from cases.scene import (
     Load,
     Material,
     Orthotropic,
+    Path,
     Polygon,
     Pressure,
     Rectangle,
@@ -33,10 +34,19 @@ from cases.scene import (
     Section,
     SectionForce,
     SectionMoment,
+    Spline,
     Support,
 )
 from cases.schema import CaseFile
-from cases.tables.centre_lines import ArcTable, CentreLineTable, HelixTable, LineTable
+from cases.tables.centre_lines import (
+    ArcTable,
+    CentreLineTable,
+    HelixTable,
+    LineTable,
+    PathTable,
+    PieceTable,
+    SplineTable,
+)
 from cases.tables.loads import (
     GravityTable,
     LineLoadTable,
@@ -177,6 +187,16 @@ def _section(table: SectionTable) -> Section:
 
 
 def _centre_line(table: CentreLineTable) -> CentreLine:
+    if not isinstance(table, PathTable):
+        return _piece(table)
+    pieces = []
+    for number, piece in enumerate(table.pieces, 1):
+        with _inside(f"pieces #{number}"):
+            pieces.append(_piece(piece))
+    return Path(tuple(pieces))
+
+
+def _piece(table: PieceTable) -> Line | Helix | Spline:
     match table:
         case LineTable():
             return Line(table.start, table.end, table.up, table.twist)
@@ -184,6 +204,8 @@ def _centre_line(table: CentreLineTable) -> CentreLine:
             return Helix(table.start, table.centre, table.axis, table.angle, table.up)
         case HelixTable():
             return Helix(table.start, table.centre, table.axis, table.angle, table.up, table.pitch)
+        case SplineTable():
+            return Spline(table.points, table.up, table.frame)
 
 
 def _face(table: RodFaceTable) -> RodFace:

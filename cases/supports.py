@@ -13,6 +13,10 @@ Component = Literal["x", "y", "s", "turn x", "turn y", "turn s"]
 
 COMPONENTS: tuple[Component, ...] = ("x", "y", "s", "turn x", "turn y", "turn s")
 
+# Rotations are linear ones, so only small ones make sense; beyond it, rad, they were likely meant in degrees.
+LARGEST_ROTATION = 1.0
+_SMALL = "rotations are small ones in rad, 1 at most; 1 deg is 0.01745"
+
 
 @dataclass(frozen=True)
 class Clamp:
@@ -21,7 +25,7 @@ class Clamp:
     Parameters
     ----------
     displacement : of the section's centre, global components, mm
-    rotation : of the section about its centre, global components, rad (small)
+    rotation : of the section about its centre, global components, rad, of magnitude 1 at most
     """
 
     rod: str
@@ -60,9 +64,11 @@ def station_of(support: Clamp | Support, rod: Rod) -> float:
 def check_support(support: Clamp | Support, rod: Rod, key: str) -> None:
     """Raise a SceneError for a support that cannot be meant."""
     if isinstance(support, Clamp):
-        require(support.end in ENDS, f"{key}.end", support.end, "write 'start' or 'end'")
+        require(support.end in ENDS, f"{key}.end", f"'{support.end}'", "write 'start' or 'end'")
         require_finite(support.displacement, f"{key}.displacement")
         require_finite(support.rotation, f"{key}.rotation")
+        small = math.hypot(*support.rotation) <= LARGEST_ROTATION
+        require(small, f"{key}.rotation", list(support.rotation), _SMALL)
         return
     require_on_rod(support.position, rod, f"{key}.position")
     components = support.components
@@ -70,12 +76,14 @@ def check_support(support: Clamp | Support, rod: Rod, key: str) -> None:
     require(known, f"{key}.components", list(components), f"name some of {', '.join(COMPONENTS)}")
     require(len(set(components)) == len(components), f"{key}.components", list(components), "name each once")
     turns = [component for component in components if component.startswith("turn")]
-    require(support.of in ("section", "mean"), f"{key}.of", support.of, "write 'section' or 'mean'")
+    require(support.of in ("section", "mean"), f"{key}.of", f"'{support.of}'", "write 'section' or 'mean'")
     remedy = "only the mean rotation of a section can be held; write of = 'mean', or a clamp for the whole section"
     require(support.of == "mean" or not turns, f"{key}.components", list(components), remedy)
     given = support.displacement
     ok = len(given) in (0, len(components)) and all(math.isfinite(value) for value in given)
     require(ok, f"{key}.displacement", list(given), f"one finite number for each of the {len(components)} components")
+    turned = [value for component, value in zip(components, given, strict=False) if component in turns]
+    require(max(map(abs, turned), default=0.0) <= LARGEST_ROTATION, f"{key}.displacement", list(given), _SMALL)
 
 
 @dataclass(frozen=True)

@@ -66,4 +66,34 @@ class HelixTable(Table):
     line is taken off, and the section then moves along as a screw does."""
 
 
-CentreLineTable = Annotated[LineTable | ArcTable | HelixTable, Field(discriminator="shape")]
+class SplineTable(Table):
+    """A smooth line through points, along the centres of a rod's sections, in global axes X, Y, Z."""
+
+    shape: Literal["spline"]
+    """Shape of the centre line: "spline"."""
+    points: Annotated[tuple[Point, ...], Field(min_length=3)]
+    """Points in order along the rod, a list of at least three, each of three lengths [X, Y, Z], such as
+    [[0, 0, 0], [100, 20, 0], [200, 0, 0]]; a cubic spline runs through them, whose parameter is the length of the
+    chords and whose first two and last two pieces are one cubic each."""
+    up: Direction
+    """Direction of the section's y axis at the start, three numbers [X, Y, Z], such as [0, 0, 1]; its part along the
+    line is taken off."""
+    frame: Literal["minimal rotation", "up"] = "minimal rotation"
+    """How the section turns along the line: "minimal rotation", not about the tangent (as without this key); or "up",
+    with y as near to `up` as it can be everywhere."""
+
+
+PieceTable = Annotated[LineTable | ArcTable | HelixTable | SplineTable, Field(discriminator="shape")]
+
+
+class PathTable(Table):
+    """Smooth pieces one after the other, through the centres of a rod's sections."""
+
+    shape: Literal["path"]
+    """Shape of the centre line: "path"."""
+    pieces: Annotated[tuple[PieceTable, ...], Field(min_length=1)]
+    """The pieces, a list of lines, arcs, helices and splines, as tables [[rods.NAME.centre_line.pieces]]; each starts
+    where the former ends, in its direction and with its y axis."""
+
+
+CentreLineTable = Annotated[LineTable | ArcTable | HelixTable | SplineTable | PathTable, Field(discriminator="shape")]
