@@ -48,11 +48,11 @@ def _sentences(problems: list[ErrorDetails]) -> list[str]:
         if problem["type"] == "extra_forbidden":
             *table, key = problem["loc"]
             known, elsewhere = _keys(schema, table), _keys_of_others(schema, table).get(str(key))
-            near = None if elsewhere else nearest(str(key), known)
+            near = nearest(str(key), known)
             if near:
                 meant.add((*table, near))
             remedy = f"did you mean '{near}'?" if near else f"the keys here are {listed(known)}"
-            remedy = f"it belongs to {elsewhere}, and {remedy}" if elsewhere else remedy
+            remedy = f"it belongs to {elsewhere}; {remedy}" if elsewhere else remedy
             misspelt.append(f"{_key(problem['loc'], schema)}: found an unknown key; {remedy}")
     others = [p for p in problems if p["type"] != "extra_forbidden" and p["loc"] not in meant]
     return misspelt + [_sentence(problem, schema) for problem in others]
@@ -137,7 +137,7 @@ def _keys_of_others(schema: dict[str, Any], table: Iterable[str | int]) -> dict[
     for name, reference in mapping.items():
         for key in schema["$defs"][reference.rsplit("/", 1)[1]]["properties"].keys() - chosen["properties"].keys():
             others.setdefault(key, []).append(name)
-    return {key: f"{tag} = {' or '.join(shown(name) for name in names)}" for key, names in others.items()}
+    return {key: f"{tag} = {', '.join(shown(name) for name in names)}" for key, names in others.items()}
 
 
 def _meaning(schema: dict[str, Any], place: Iterable[str | int]) -> str:

@@ -137,7 +137,7 @@ class Scene:
         for number, end in enumerate(joint.ends, 1):
             rod = self._rod_at(f"{key} #{number}.rod", end.rod)
             require(end.end in ENDS, f"{key} #{number}.end", f"'{end.end}'", "write 'start' or 'end'")
-            again = end in joined or joint.ends.count(end) > 1
+            again = end in joined or end in joint.ends[: number - 1]
             require(not again, f"{key} #{number}", f"{end.rod} {end.end} again", "join an end once")
             at = 0.0 if end.end == "start" else rod.length
             held = any(support.rod == end.rod and station_of(support, rod) == at for support in self.supports)

@@ -86,9 +86,11 @@ class RodModelTable(Table):
     """How the rod model solves the case."""
 
     level: Annotated[StrictInt, Field(ge=1, le=12)]
-    """Level k of the model h_k, a whole number from 1 to 12: degree of the polynomials over the section."""
+    """Level k of the model h_k, a whole number from 1 to 12: degree of the polynomials over the section;
+    [rod_model.levels] names rods that differ."""
     order: Annotated[StrictInt, Field(ge=2, le=20)]
-    """Order p of the shape functions along the rod, a whole number from 2 to 20."""
+    """Order p of the shape functions along the rod, a whole number from 2 to 20; [rod_model.orders] names rods that
+    differ."""
     levels: Annotated[dict[Name, Levels], ONLY_NAMES] = Field(default_factory=dict)
     """Levels of rods that differ from `level`, by name: a whole number, or a list with one for each element, such as
     beam = [5, 3, 3]."""

@@ -67,14 +67,17 @@ class HelixTable(Table):
 
 
 class SplineTable(Table):
-    """A smooth line through points, along the centres of a rod's sections, in global axes X, Y, Z."""
+    """A smooth line through points, along the centres of a rod's sections, in global axes X, Y, Z.
+
+    It is a cubic spline whose parameter is the length of the chords; its first two pieces are one cubic, and so are its
+    last two.
+    """
 
     shape: Literal["spline"]
     """Shape of the centre line: "spline"."""
     points: Annotated[tuple[Point, ...], Field(min_length=3)]
     """Points in order along the rod, a list of at least three, each of three lengths [X, Y, Z], such as
-    [[0, 0, 0], [100, 20, 0], [200, 0, 0]]; a cubic spline runs through them, whose parameter is the length of the
-    chords and whose first two and last two pieces are one cubic each."""
+    [[0, 0, 0], [100, 20, 0], [200, 0, 0]]."""
     up: Direction
     """Direction of the section's y axis at the start, three numbers [X, Y, Z], such as [0, 0, 1]; its part along the
     line is taken off."""

@@ -36,7 +36,7 @@ def _no_turn(component: object) -> object:
 
 
 class SectionSupportTable(Table):
-    """Displacements along chosen axes are held at every point of a section."""
+    """Displacements along chosen axes are held at every point of a section; "s" alone makes a plane of symmetry."""
 
     kind: Literal["section"]
     """Kind of support: "section"."""
@@ -52,7 +52,10 @@ class SectionSupportTable(Table):
 
 
 class MeanSupportTable(Table):
-    """Chosen components of the mean motion of a section are held; the section may deform."""
+    """Chosen components of the mean motion of a section are held; the section may deform.
+
+    "x", "y" and "s" make a pin, "x" or "y" alone a roller.
+    """
 
     kind: Literal["mean"]
     """Kind of support: "mean"."""
