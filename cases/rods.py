@@ -76,6 +76,8 @@ def _on_piece_borders(borders: tuple[float, ...], path: Path) -> tuple[float, ..
 
 def _require_roomy(line: CentreLine, section: Section, key: str) -> None:
     """See that the sections do not overlap on the inner side of the curve, where sqrt(g) must be positive."""
+    # No direction d reaches farther than |d_x| times that along x and |d_y| times that along y.
+    farthest = math.sqrt(2.0) * max(section_reach(section, axis) for axis in (*np.eye(2), *-np.eye(2)))
     for start, piece in zip(line.borders, line.pieces, strict=False) if isinstance(line, Path) else ((0.0, line),):
         stations, bends = curvatures(piece)
         sizes = np.linalg.norm(bends, axis=1)
@@ -87,7 +89,7 @@ def _require_roomy(line: CentreLine, section: Section, key: str) -> None:
         tightest = int(np.argmax(reaches * sizes))
         reach, curvature = reaches[tightest], float(sizes[tightest])
         where = f" at s = {start + stations[tightest]:.3g} mm" if len(stations) > 1 else ""
-        found = f"a radius of curvature of {1.0 / curvature if curvature else math.inf:g} mm{where}"
+        found = f"a radius of curvature of {1.0 / curvature:g} mm{where}"
         remedy = f"it must be larger than the section's {reach:g} mm on the inner side"
         require(reach * curvature < 1.0, key, found, remedy)
 

@@ -1,19 +1,22 @@
 """Centre line of a rod: its points, its local frame, and how fast the frame turns.
 
-Every centre line here is the orbit of a point under a steady screw motion: a straight line (turning about itself if it
-is pre-twisted), a circular arc, a helix. The frame takes part in the motion, so that its rate of turning, the Darboux
-vector omega = k1 e1 + k2 e2 + tau t with e' = omega x e, is constant in the frame.
+A straight line (turning about itself if it is pre-twisted), a circular arc and a helix are orbits of a point under a
+steady screw motion. The frame takes part in the motion, so that its rate of turning, the Darboux vector
+omega = k1 e1 + k2 e2 + tau t with e' = omega x e, is constant in the frame. Along a spline (`rodmodel.spline`) it
+varies; a path has pieces of all kinds.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
 
-from cases.scene import CentreLine, Line, Rod
+from cases.scene import CentreLine, Helix, Line, Path, Rod, Spline
+from rodmodel.spline import spline_curve, spline_frames, spline_points, spline_turning
 
 Array = NDArray[np.float64]
 
@@ -41,7 +44,7 @@ class ScrewMotion:
 
 
 @lru_cache(maxsize=1024)
-def screw_motion(line: CentreLine) -> ScrewMotion:
+def screw_motion(line: Line | Helix) -> ScrewMotion:
     """The motion that makes a centre line."""
     start = np.array(line.start, dtype=float)
     if isinstance(line, Line):
@@ -63,17 +66,64 @@ def _axes(tangent: Array, up: tuple[float, float, float]) -> Array:
 
 def frame(line: CentreLine) -> Array:
     """Local frame at the start: rows e1, e2, t in global components, shape (3, 3). A straight line keeps it."""
-    return screw_motion(line).axes
+    return screw_motion(line).axes if isinstance(line, Line | Helix) else frames(line, np.zeros(1))[0]
 
 
 @lru_cache(maxsize=1024)
-def darboux(line: CentreLine) -> tuple[float, float, float]:
+def darboux(line: Line | Helix) -> tuple[float, float, float]:
     """k1, k2 and tau: rate of turning of the frame about e1, e2 and t, rad/mm."""
     motion = screw_motion(line)
     rates = motion.turning * (motion.axes @ motion.axis)
     # An arc's twist and the curvature across its plane are zero, not round-off.
     k1, k2, tau = np.where(np.abs(rates) > 1e-12 * np.abs(motion.turning), rates, 0.0)
     return float(k1), float(k2), float(tau)
+
+
+def turning_at(line: CentreLine, station: Array) -> Array:
+    """k1, k2, tau at stations (mm), rad/mm, shape (3, n); where they jump, those of the piece before."""
+    if isinstance(line, Path):
+        return _piecewise(turning_at, line, station, (3,))
+    if isinstance(line, Spline):
+        return spline_turning(line, station)
+    return np.repeat(np.array(darboux(line))[:, None], len(station), axis=1)
+
+
+def constant_turning(line: CentreLine, left: float, right: float) -> tuple[float, float, float] | None:
+    """k1, k2, tau between two stations of the same piece (mm), or None where they vary."""
+    if isinstance(line, Path):
+        line = line.pieces[int(_piece_at(line, np.array([0.5 * (left + right)]))[0])]
+    return None if isinstance(line, Spline | Path) else darboux(line)
+
+
+def kinks(line: CentreLine) -> Array:
+    """Stations where the turning jumps, mm, ascending: elements end there."""
+    return np.array(line.borders[1:-1]) if isinstance(line, Path) else np.empty(0)
+
+
+@lru_cache(maxsize=256)
+def knots(line: CentreLine) -> Array:
+    """Stations between which the turning is smooth, mm, ascending: kinks and the given points of splines."""
+    if isinstance(line, Path):
+        within = [start + knots(piece) for start, piece in zip(line.borders, line.pieces, strict=False)]
+        return np.sort(np.concatenate([kinks(line), *within]))
+    return spline_curve(line).knot_stations[1:-1] if isinstance(line, Spline) else np.empty(0)
+
+
+def _piece_at(path: Path, station: Array) -> NDArray[np.int64]:
+    """Number of the piece that stations lie in, shape (n,); where two meet, the one before."""
+    return np.asarray(np.clip(np.searchsorted(path.borders, station, side="left") - 1, 0, len(path.pieces) - 1))
+
+
+def _piecewise(
+    evaluate: Callable[[CentreLine, Array], Array], path: Path, station: Array, shape: tuple[int, ...]
+) -> Array:
+    """A function of the stations of a line evaluated on the pieces of a path, shape (*shape, n)."""
+    result = np.empty((*shape, len(station)))
+    number = _piece_at(path, station)
+    for index in np.unique(number):
+        members = number == index
+        result[..., members] = evaluate(path.pieces[index], station[members] - path.borders[index])
+    return result
 
 
 def _turned(motion: ScrewMotion, vectors: Array, station: Array) -> Array:
@@ -88,12 +138,21 @@ def _turned(motion: ScrewMotion, vectors: Array, station: Array) -> Array:
 
 def frames(line: CentreLine, station: Array) -> Array:
     """Local frame at stations (mm): rows e1, e2, t in global components, shape (n, 3, 3)."""
+    if isinstance(line, Path):
+        last = _piecewise(lambda piece, at: frames(piece, at).transpose(1, 2, 0), line, station, (3, 3))
+        return np.ascontiguousarray(last.transpose(2, 0, 1))
+    if isinstance(line, Spline):
+        return spline_frames(line, station)
     motion = screw_motion(line)
     return _turned(motion, motion.axes, station)
 
 
 def centre_points(line: CentreLine, station: Array) -> Array:
     """Points of the centre line at stations (mm), global, mm, shape (3, n)."""
+    if isinstance(line, Path):
+        return _piecewise(centre_points, line, station, (3,))
+    if isinstance(line, Spline):
+        return spline_points(line, station)
     motion = screw_motion(line)
     from_centre = _turned(motion, (motion.start - motion.centre)[None], station)[:, 0]
     return np.asarray((motion.centre + from_centre + np.multiply.outer(station * motion.advance, motion.axis)).T)
@@ -107,5 +166,5 @@ def global_points(rod: Rod, points: Array) -> Array:
 
 def local_points(rod: Rod, points: Array) -> Array:
     """Coordinates (x, y, s) in the frame of a straight rod of global points, mm; shape (3, n) to (3, n)."""
-    motion = screw_motion(rod.centre_line)
-    return np.asarray(motion.axes @ (points - motion.start[:, None]))
+    line = rod.centre_line
+    return np.asarray(frame(line) @ (points - np.array(line.start, dtype=float)[:, None]))

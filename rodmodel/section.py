@@ -108,9 +108,11 @@ def _functions(chosen: Fields) -> IntArray:
 
 
 def strain_operators(
-    section: Section, chosen: Fields, x: Array, y: Array, turning: Darboux
+    section: Section, chosen: Fields, x: Array, y: Array, turning: Darboux | Array
 ) -> tuple[Array, Array, Array]:
     """B_0 and B_1 at section points, each of shape (n_points, 6, n_fields), and sqrt(g) there, shape (n_points,).
+
+    turning : k1, k2, tau of the frame, rad/mm; where it varies, at every point, shape (3, n_points)
 
     The frame (e1, e2, t) turns by omega = (k1, k2, tau) per arc length. Along s a point moves by sqrt(g) t +
     tau (x e2 - y e1) with sqrt(g) = 1 - k2 x + k1 y, and the components of a vector change by omega x (u, v, w). So the
@@ -123,7 +125,7 @@ def strain_operators(
     slope_x, slope_y = (slope.T for slope in section_slopes(section, chosen, x, y))
     stretch = 1.0 - k2 * x + k1 * y
     along = value / stretch[:, None]
-    swirl = -tau * (x[:, None] * slope_y - y[:, None] * slope_x) / stretch[:, None]
+    swirl = -np.reshape(tau, (-1, 1)) * (x[:, None] * slope_y - y[:, None] * slope_x) / stretch[:, None]
     is_u, is_v, is_w = (chosen.indices(component) for component in (U, V, W))
     b0 = np.zeros((len(x), 6, chosen.count))
     b1 = np.zeros_like(b0)
@@ -141,7 +143,7 @@ def strain_operators(
         b1[:, row, own] = along[:, own]
         b0[:, row, own] += swirl[:, own]
         for other, rate in others:
-            b0[:, row, other] += rate * along[:, other]
+            b0[:, row, other] += np.reshape(rate, (-1, 1)) * along[:, other]
     return b0, b1, stretch
 
 
@@ -189,18 +191,18 @@ def per_axial_modulus(material: Material | Orthotropic) -> Material | Orthotropi
     return replace(material, young_moduli=young, shear_moduli=shear)
 
 
-def product_quadrature(section: Section, level: int, turning: Darboux) -> tuple[Array, Array, Array]:
+def product_quadrature(section: Section, level: int, turning: Darboux | Array) -> tuple[Array, Array, Array]:
     """Points x, y (mm) and weights (mm^2) for products of two level-k functions.
 
     Exact for a straight rod; a curved one divides by sqrt(g), which `EXTRA_DEGREES` more resolve to round-off down to
     a radius of the section's size.
     """
-    return section_quadrature(section, 2 * level + (EXTRA_DEGREES if any(turning) else 0))
+    return section_quadrature(section, 2 * level + (EXTRA_DEGREES if np.any(turning) else 0))
 
 
 @dataclass(frozen=True, eq=False)
 class SectionStiffness:
-    """S_ab = int B_a^T D B_b sqrt(g) dA, each of shape (n_fields, n_fields); S_10 = S_01^T."""
+    """S_ab = int B_a^T D B_b sqrt(g) dA, each of shape (..., n_fields, n_fields); S_10 = S_01^T."""
 
     s00: Array
     s01: Array
@@ -208,16 +210,69 @@ class SectionStiffness:
 
 
 def section_stiffness(
-    section: Section, material: Material | Orthotropic, chosen: Fields, turning: Darboux
+    section: Section, material: Material | Orthotropic, chosen: Fields, turning: Darboux | Array
 ) -> SectionStiffness:
     """Section stiffness matrices: N, N mm and N mm^2 per unit of psi and psi'.
 
-    turning : k1, k2, tau of the frame, rad/mm
+    The strain of a field is made of four functions of its scalar function phi: phi_x, phi_y, phi / sqrt(g) and
+    (x phi_y - y phi_x) / sqrt(g), with coefficients that are constant over the section (`strain_operators`). So their
+    integrals by pairs, which components and strains share, give all S_ab.
+
+    turning : k1, k2, tau of the frame, rad/mm; at several stations of shape (3, n), for matrices of shape
+        (n, n_fields, n_fields)
     """
-    x, y, weight = product_quadrature(section, chosen.level, turning)
-    b0, b1, stretch = strain_operators(section, chosen, x, y, turning)
-    b0, b1 = (b.reshape(-1, chosen.count) for b in (b0, b1))
+    rates = np.reshape(turning, (3, -1))
+    at_zero, at_one = _strain_coefficients(rates)
     law = elasticity_matrix(material, chosen.level)
-    weighted = ((weight * stretch)[:, None, None] * law).reshape(-1, 6, 6)
-    d_b0, d_b1 = ((weighted @ b.reshape(-1, 6, chosen.count)).reshape(-1, chosen.count) for b in (b0, b1))
-    return SectionStiffness(b0.T @ d_b0, b0.T @ d_b1, b1.T @ d_b1)
+    energies = [a.transpose(0, 2, 1) @ law @ b for a, b in ((at_zero, at_zero), (at_zero, at_one), (at_one, at_one))]
+    shares = np.stack(energies, axis=1).reshape(-1, 3, 3, 4, 3, 4).transpose(0, 1, 2, 4, 3, 5).reshape(-1, 27, 16)
+    pairs = _products(section, chosen.level, rates)
+    count = pairs.shape[-1]
+    blocks = shares @ pairs.reshape(-1, 16, count * count)
+    component, function = chosen.table[0], _functions(chosen)
+    place = (3 * component[:, None] + component) * count**2 + count * function[:, None] + function
+    found = np.take(blocks.reshape(-1, 3, 9 * count * count), place, axis=2)
+    return SectionStiffness(*(found.transpose(1, 0, 2, 3) if np.ndim(turning) == 2 else found[0]))
+
+
+def _strain_coefficients(rates: Array) -> tuple[Array, Array]:
+    """What the four functions of u, v, w add to each strain with psi and with psi', shape (n, 6, 3 * 4) each."""
+    k1, k2, tau = rates
+    at_zero, at_one = np.zeros((2, rates.shape[1], 6, 3, 4))
+    slope_x, slope_y, value, swirl = range(4)
+    for row, component, function in ((0, U, slope_x), (1, V, slope_y), (5, U, slope_y), (5, V, slope_x)):
+        at_zero[:, row, component, function] = 1.0
+    for row, function in ((3, slope_y), (4, slope_x)):
+        at_zero[:, row, W, function] = 1.0
+    for row, own, others in (
+        (2, W, ((V, k1), (U, -k2))),
+        (3, V, ((U, tau), (W, -k1))),
+        (4, U, ((W, k2), (V, -tau))),
+    ):
+        at_one[:, row, own, value] = 1.0
+        at_zero[:, row, own, swirl] = -tau
+        for other, rate in others:
+            at_zero[:, row, other, value] = rate
+    return at_zero.reshape(-1, 6, 12), at_one.reshape(-1, 6, 12)
+
+
+def _products(section: Section, level: int, rates: Array) -> Array:
+    """Integrals of pairs of the four functions times sqrt(g), for all scalar ones, shape (n, 4, 4, count, count)."""
+    k1, k2, _ = rates
+    x, y, weight = product_quadrature(section, level, rates)
+    basis = section_basis(section, level)
+    slopes = np.array(basis_slopes(basis, x, y))
+    value = basis_values(basis, x, y)
+    others = np.array([value, x * slopes[1] - y * slopes[0]])
+    count = len(value)
+    slopes, others = slopes.reshape(2 * count, -1), others.reshape(2 * count, -1)
+    whole = np.empty((rates.shape[1], 4 * count, 4 * count))
+    # sqrt(g) = 1 - k2 x + k1 y multiplies pairs of slopes, and divides pairs of the others.
+    plain, by_x, by_y = ((slopes * factor) @ slopes.T for factor in (weight, weight * x, weight * y))
+    whole[:, : 2 * count, : 2 * count] = plain - k2[:, None, None] * by_x + k1[:, None, None] * by_y
+    mixed = (slopes * weight) @ others.T
+    whole[:, : 2 * count, 2 * count :], whole[:, 2 * count :, : 2 * count] = mixed, mixed.T
+    shares = weight / (1.0 + k1[:, None] * y - k2[:, None] * x)
+    divided = (shares[:, None] * others).reshape(-1, len(x)) @ others.T
+    whole[:, 2 * count :, 2 * count :] = divided.reshape(-1, 2 * count, 2 * count)
+    return np.ascontiguousarray(whole.reshape(-1, 4, count, 4, count).transpose(0, 1, 3, 2, 4))

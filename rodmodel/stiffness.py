@@ -1,8 +1,9 @@
 """Stiffness of one element, and its bubbles condensed onto its two nodes.
 
-For constant curvature K = sum over a, b in {0, 1} of M_ab (axial) kron S_ab (section); degrees of freedom are ordered
-node, node, bubbles along the rod, and for each of them the fields of the section. Everything is for unit Young's
-modulus: the modulus only scales an element, so that rods of one shape share their elements.
+For constant curvature K = sum over a, b in {0, 1} of M_ab (axial) kron S_ab (section); where curvature varies, the
+sum of such products over the points of a quadrature along the element. Degrees of freedom are ordered node, node,
+bubbles along the rod, and for each of them the fields of the section. Everything is for unit Young's modulus: the
+modulus only scales an element, so that rods of one shape share their elements.
 """
 
 from __future__ import annotations
@@ -12,12 +13,15 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from rodmodel.axial import axial_matrices
+from rodmodel.axial import axial_matrices, gauss, shape_function_slopes, shape_functions
 from rodmodel.section import Fields, SectionStiffness, W
 from rodmodel.triangular import cholesky, lower_solve, transposed_solve
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
+
+# Points along an element beyond those that its order needs where section matrices vary: what these add to the degree.
+EXTRA_POINTS = 4
 
 
 def stiffness_terms(order: int, section: SectionStiffness) -> Array:
@@ -137,3 +141,55 @@ def condensed_element(family: ElementFamily, length: float) -> Element:
         [lower_solve(block, at_length(terms)) for block, terms in zip(factor.blocks, family.coupling, strict=True)]
     )
     return Element(family.fields, family.order, length, at_length(family.nodal) - half.T @ half, factor, half)
+
+
+def axial_quadrature(order: int, left: float, right: float, knots: Array) -> tuple[Array, Array]:
+    """Points xi in [-1, 1] and weights along an element whose section matrices vary smoothly between knots.
+
+    Gauss rules between the knots, each exact for its share of the order and 2 `EXTRA_POINTS` degrees more.
+
+    Parameters
+    ----------
+    left, right : ends of the element, arc length, mm
+    knots : along the whole line, mm, ascending
+    """
+    within = knots[(knots > left) & (knots < right)]
+    borders = np.concatenate([[-1.0], (2.0 * within - left - right) / (right - left), [1.0]])
+    half = 0.5 * np.diff(borders)
+    rules = [gauss(int(np.ceil(order * share)) + 1 + EXTRA_POINTS) for share in half]
+    points = [start + share * (1.0 + xi) for start, share, (xi, _) in zip(borders, half, rules, strict=False)]
+    return np.concatenate(points), np.concatenate([share * w for share, (_, w) in zip(half, rules, strict=True)])
+
+
+def varying_element(
+    order: int, fields: Fields, length: float, quadrature: tuple[Array, Array], section: SectionStiffness
+) -> Element:
+    """Element whose section matrices vary along it, with its bubbles eliminated.
+
+    Parameters
+    ----------
+    length : mm
+    quadrature : points xi in [-1, 1] and weights, shape (n,) each (`axial_quadrature`)
+    section : S_ab at these points, shape (n, n_fields, n_fields) each
+    """
+    stiffness = varying_stiffness(order, length, quadrature, section)
+    n_nodal = 2 * fields.count
+    bubbles = (np.arange(len(stiffness) - n_nodal),)
+    factor = BubbleFactor(bubbles, (cholesky(stiffness[n_nodal:, n_nodal:]),))
+    half = lower_solve(factor.blocks[0], stiffness[n_nodal:, :n_nodal])
+    return Element(fields, order, length, stiffness[:n_nodal, :n_nodal] - half.T @ half, factor, half)
+
+
+def varying_stiffness(order: int, length: float, quadrature: tuple[Array, Array], section: SectionStiffness) -> Array:
+    """K = int sum over a, b of (N^(a) N^(b)T) kron S_ab ds before condensation, shape (n, n), n = (p + 1) n_fields."""
+    xi, weight = quadrature
+    n_axial, n_fields = order + 1, section.s00.shape[-1]
+    values, slopes = shape_functions(order, xi), shape_function_slopes(order, xi) * (2.0 / length)
+    pairs = ((values, values, section.s00), (2.0 * values, slopes, section.s01), (slopes, slopes, section.s11))
+    axial = [np.einsum("aq,bq,q->abq", first, second, 0.5 * length * weight) for first, second, _ in pairs]
+    along = np.concatenate(axial, axis=2).reshape(n_axial**2, -1)
+    over_section = np.concatenate([matrices for *_, matrices in pairs]).reshape(-1, n_fields**2)
+    whole = (along @ over_section).reshape(n_axial, n_axial, n_fields, n_fields).transpose(0, 2, 1, 3)
+    whole = whole.reshape(n_axial * n_fields, -1)
+    # Of the mixed terms N N'^T kron S_01 and their transpose, twice the first is there.
+    return np.asarray(0.5 * (whole + whole.T))
