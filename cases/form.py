@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from functools import cache
 from typing import Any
 
 from pydantic import ValidationError
@@ -40,9 +41,14 @@ def checked_form(content: dict[str, Any]) -> CaseFile:
     raise FormError(_sentences(problems))
 
 
+@cache
+def _schema() -> dict[str, Any]:
+    return case_schema()
+
+
 def _sentences(problems: list[ErrorDetails]) -> list[str]:
     """What is wrong with the form of a file, misspelt keys first."""
-    schema = case_schema()
+    schema = _schema()
     misspelt, meant = [], set()
     for problem in problems:
         if problem["type"] == "extra_forbidden":

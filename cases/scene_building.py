@@ -72,9 +72,10 @@ def require_found(condition: bool, key: str, found: object, remedy: str) -> None
 def require_known(name: str, names: Iterable[str], key: str, table: str) -> None:
     """See that a name is one of a table's."""
     names = list(names)
-    near = nearest(name, names)
-    hint = f"; did you mean '{near}'?" if near else ""
-    require_found(name in names, key, name, f"the [{table}] are {listed(names)}{hint}")
+    if name not in names:
+        near = nearest(name, names)
+        hint = f"; did you mean '{near}'?" if near else ""
+        raise SceneError(key, shown(name), f"the [{table}] are {listed(names)}{hint}")
 
 
 def scene_from(name: str, file: CaseFile) -> Scene:
