@@ -1,10 +1,11 @@
 """What a person sees who made a mistake in a case file: one sentence with file, key, find and remedy.
 
-Every mistake is a small edit of a case of the library.
+Every mistake is a small edit of a case of the library, or of the case that uses everything.
 """
 
 import math
 import re
+from pathlib import Path
 
 import pytest
 from hypothesis import given
@@ -14,6 +15,7 @@ from cases.loader import LIBRARY, CaseError, library_names, load_case
 from cases.scene import Box, Circle, Helix, Line, LineLoad, Polygon, Ring, SectionForce, SectionMoment
 
 GOOD = (LIBRARY / "two-cantilevers-e50-g05.toml").read_text(encoding="utf-8")
+EVERYTHING = Path(__file__).with_name("everything.toml").read_text(encoding="utf-8")
 
 
 @pytest.fixture
@@ -30,9 +32,8 @@ def message(tmp_path):
     return load
 
 
-def edited(*edits):
-    """The good case with every (old, new) replaced once."""
-    text = GOOD
+def edited(*edits, text=GOOD):
+    """The good case, or another one, with every (old, new) replaced once."""
     for old, new in edits:
         assert old in text
         text = text.replace(old, new, 1)
@@ -303,18 +304,271 @@ MISTAKES = [
 ]
 
 
-@pytest.mark.parametrize(
-    ("edits", "key", "found", "remedy"),
-    [pytest.param(*mistake[1:], id=mistake[0]) for mistake in MISTAKES],
-)
-def test_a_mistake_is_named_with_file_key_find_and_remedy(message, edits, key, found, remedy):
-    text = message(edited(*edits))
+# (what is wrong, edits of the case that uses everything, key, found, remedy)
+MISTAKES_ANYWHERE = [
+    # materials
+    ("bare density", [('"7850 kg/m^3"', "7850")], "materials.steel.density", "7850", '"7850 kg/m^3"'),
+    ("weight for mass", [('"7850 kg/m^3"', '"77 kN/m^3"')], "materials.steel.density", "kN", "a density with its unit"),
+    ("thousand times too dense", [('"7850 kg/m^3"', '"7850 g/cm^3"')], "materials.steel.density", "7.85e-06", "denser"),
+    ("no density", [('density = "7850 kg/m^3"\n', "")], "materials.steel.density", "no such key", "'beam' has weight"),
+    ("unknown law", [('"orthotropic"', '"orthotrop"')], "materials.spruce.law", '"orthotrop"', "mean 'orthotropic'?"),
+    ("law without name", [('law = "isotropic"', "law = 3")], "materials.rubber.law", "3", "'isotropic', 'orthotropic'"),
+    (
+        "keys of a law that was not named",
+        [('law = "orthotropic"\n', "")],
+        "materials.spruce.young_moduli",
+        "an unknown key",
+        "it belongs to law = \"orthotropic\"; did you mean 'young_modulus'?",
+    ),
+    ("one modulus", [('["0.8 GPa", "0.5 GPa", "11 GPa"]', '"11 GPa"')], "materials.spruce.young_moduli", "11", "three"),
+    (
+        "soft modulus",
+        [('"0.5 GPa", "11 GPa"', '0, "11 GPa"')],
+        "materials.spruce.young_moduli",
+        "[800.0, 0.0",
+        "positive",
+    ),
+    ("length as modulus", [('"11 GPa"', '"11 km"')], "materials.spruce.young_moduli #3", '"11 km"', "a stress"),
+    ("ratios without energy", [("0.03, 0.02]", "0.03, 2]")], "materials.spruce.poisson_ratios", "2.0", "an energy"),
+    # supports
+    ("unknown support", [('kind = "mean"', 'kind = "pin"')], "supports #5.kind", '"pin"', "'clamp', 'mean', 'section'"),
+    ("support of nothing", [('"mean"\nrod = "beam"', '"mean"\nrod = "bean"')], "supports #5.rod", '"bean"', "'beam'?"),
+    ("support off the rod", [('"0.4 m"', '"0.5 m"')], "supports #5.position", "500", "from 0 to 400 mm"),
+    (
+        "keys of another support",
+        [('position = "0.4 m"', 'end = "end"')],
+        "supports #5.end",
+        "an unknown key",
+        'it belongs to kind = "clamp"',
+    ),
+    (
+        "turn of a whole section",
+        [('["y", "s"]', '["y", "turn s"]')],
+        "supports #3.components #2",
+        '"turn s"',
+        "hold its mean rotation with kind = 'mean'",
+    ),
+    ("global axis", [('["y", "s"]', '["Y", "s"]')], "supports #3.components #1", '"Y"', "write 'x', 'y' or 's'"),
+    (
+        "turn about nothing",
+        [('"turn x"]', '"turn z"]')],
+        "supports #5.components #2",
+        '"turn z"',
+        "'turn y' or 'turn s'",
+    ),
+    ("component twice", [('["y", "s"]', '["y", "y"]')], "supports #3.components", "['y', 'y']", "name each once"),
+    ("no component", [('["y", "s"]', "[]")], "supports #3.components", "[]", "at least one"),
+    ("component without list", [('["y", "s"]', '"y"')], "supports #3.components", '"y"', "a list of at least one"),
+    ("displacements missing", [('[-0.5, "1 deg"]', "[-0.5]")], "supports #5.displacement", "[-0.5]", "'y', 'turn x'"),
+    ("length of a turn", [('"1 deg"]', '"1 mm"]')], "supports #5.displacement #2", '"1 mm"', "for 'turn x' an angle"),
+    ("angle of a length", [("[-0.5,", '["1 deg",')], "supports #5.displacement #1", '"1 deg"', "for 'y' a length"),
+    (
+        "turn in degrees",
+        [('[-0.5, "1 deg"]', "[-0.5, 5]")],
+        "supports #5.displacement",
+        "[-0.5, 5.0]",
+        "1 deg is 0.01745",
+    ),
+    ("clamp in degrees", [('["0.5 deg", 0, 0]', "[5, 0, 0]")], "supports #2.rotation", "[5.0, 0.0", "1 deg is 0.01745"),
+    ("turned by a length", [('["0.5 deg", 0', '["5 mm", 0')], "supports #2.rotation #1", '"5 mm"', "an angle"),
+    ("moved by an angle", [('[0, "-1 mm", 0]', '[0, "1 deg", 0]')], "supports #2.displacement #2", "deg", "a length"),
+    (
+        "supported twice",
+        [('rod = "strip"\nposition = 0', 'rod = "post"\nposition = 0')],
+        "supports #3",
+        "post at 0 mm again",
+        "once",
+    ),
+    # joints
+    (
+        "one end",
+        [('joints]]\nends = [{ rod = "post", end = "end" }, ', "joints]]\nends = [] # ")],
+        "joints #1.ends",
+        "[]",
+        "two",
+    ),
+    (
+        "unknown end",
+        [('"brace", end = "start"', '"brace", end = "top"')],
+        "joints #1.ends #3.end",
+        '"top"',
+        "'start' or",
+    ),
+    (
+        "joint of nothing",
+        [('"brace", end', '"brase", end')],
+        "joints #1.ends #3.rod",
+        '"brase"',
+        "did you mean 'brace'?",
+    ),
+    (
+        "joined afar",
+        [('"brace", end = "start"', '"brace", end = "end"')],
+        "joints #1.ends #3",
+        "424.264 mm",
+        "one point",
+    ),
+    (
+        "joined twice",
+        [('"brace", end = "start"', '"post", end = "end"')],
+        "joints #1.ends #3",
+        "post end again",
+        "once",
+    ),
+    (
+        "joined and supported",
+        [('rod = "beam"\nposition = "0.4 m"', 'rod = "beam"\nposition = 0')],
+        "joints #1.ends #2",
+        "beam start, which has a support",
+        "elsewhere",
+    ),
+    ("joint as one table", [("[[joints]]", "[joints]")], "joints", "a table", "one [[joints]] for each"),
+    # beds
+    ("bed on a wire", [('"beam", face = "b', '"spring", face = "b')], "beds #1.face.rod", "a circle", "flat faces"),
+    (
+        "bed of nothing",
+        [('"beam", face = "b', '"bean", face = "b')],
+        "beds #1.face.rod",
+        '"bean"',
+        "did you mean 'beam'?",
+    ),
+    ("bed below", [('face = "bottom"', 'face = "below"')], "beds #1.face.face", '"below"', "'top', 'bottom'"),
+    ("bed backwards", [('"200 mm"', '"350 mm"')], "beds #1.start", "350 .. 300", "a rising stretch"),
+    ("stiffness for modulus", [('"0.05 N/mm^3"', '"5 N/mm"')], "beds #1.modulus", '"5 N/mm"', "a stress per length"),
+    ("bed that pushes", [('"0.05 N/mm^3"', "-1")], "beds #1.modulus", "-1", "must be positive"),
+    # loads
+    (
+        "pressure on a wire",
+        [('"strip", face = "t', '"snake", face = "t')],
+        "loads #5.face.rod",
+        "a circle",
+        "flat faces",
+    ),
+    (
+        "pressure nowhere",
+        [('"strip", face = "t', '"stripe", face = "t')],
+        "loads #5.face.rod",
+        '"stripe"',
+        "mean 'strip'?",
+    ),
+    (
+        "pressure without face",
+        [('face = { rod = "strip", face = "top" }', 'rod = "strip"')],
+        "loads #5.rod",
+        "an unknown key",
+        'it belongs to kind = "line load", "section force", "section moment"',
+    ),
+    # gravity stands for two loads of the scene, so the file's number is not the scene's
+    ("pressure beyond the end", [("end = 300", "end = 401")], "loads #5.start", "100 .. 401", "from 0 to 400 mm"),
+    ("force as pressure", [('"2 bar"', '"2 N"')], "loads #5.pressure", '"2 N"', "a stress"),
+    ("bare gravity", [('"-9.81 m/s^2"', "-9.81")], "loads #1.acceleration #2", "-9.81", '"9.81 m/s^2"'),
+    ("gravity as speed", [('"-9.81 m/s^2"', '"-9.81 m/s"')], "loads #1.acceleration #2", '"-9.81 m/s"', "acceleration"),
+    ("gravity without direction", [('[0, "-9.81 m/s^2", 0]', '"1 m/s^2"')], "loads #1.acceleration", '"1', "three"),
+    (
+        "weight of a material without",
+        [('"post", "beam"]', '"strip"]')],
+        "materials.rubber.density",
+        "no such",
+        "'strip'",
+    ),
+    ("weight of all", [('rods = ["post", "beam"]\n', "")], "materials.rubber.density", "no such key", "'strip' has"),
+    ("weight of nothing", [('["post", "beam"]', '["post", "bean"]')], "loads #1.rods #2", '"bean"', "mean 'beam'?"),
+    ("weight twice", [('["post", "beam"]', '["post", "post"]')], "loads #1.rods #2", '"post"', "each rod once"),
+    ("weight of none", [('["post", "beam"]', "[]")], "loads #1.rods", "[]", "at least one"),
+    # centre lines
+    (
+        "two points",
+        [(', [100, 0, 2000], [150, 0, 2020], ["20 cm", 0, 2000]]', "]")],
+        "rods.snake.centre_line.points",
+        "[[0",
+        "three",
+    ),
+    ("point twice", [("[50, 20, 2000]", "[0, 0, 2000]")], "rods.snake.centre_line.points #2", "again", "must differ"),
+    (
+        "point in a plane",
+        [("[50, 20, 2000]", "[50, 20]")],
+        "rods.snake.centre_line.points #2",
+        "[50, 20]",
+        "three lengths",
+    ),
+    (
+        "mass in a point",
+        [("[50, 20, 2000]", '["1 kg", 20, 2000]')],
+        "rods.snake.centre_line.points #2 #1",
+        "kg",
+        "length",
+    ),
+    (
+        "unknown frame",
+        [('frame = "up"', 'frame = "fixed"')],
+        "rods.snake.centre_line.frame",
+        '"fixed"',
+        "minimal rotation",
+    ),
+    (
+        "path within a path",
+        [('shape = "arc"', 'shape = "path"')],
+        "rods.hook.centre_line.pieces #2.shape",
+        '"path"',
+        "'arc', 'helix', 'line', 'spline'",
+    ),
+    (
+        "piece that cannot be",
+        [("axis = [0, 0, 1]", "axis = [0, 0, 0]")],
+        "rods.hook.centre_line.pieces #2.axis",
+        "[0.0, 0.0, 0.0]",
+        "a direction",
+    ),
+    (
+        "pieces apart",
+        [('"arc"\nstart = [100, 0, 900]', '"arc"\nstart = [101, 0, 900]')],
+        "rods.hook.centre_line.pieces #2",
+        "1 mm from the end of piece #1",
+        "[100, 0, 900]",
+    ),
+    # levels and orders
+    ("levels missing", [("[5, 4, 3]", "[5, 4]")], "rod_model.levels.beam", "[5, 4]", "rod 'beam' has 3"),
+    ("level too high", [("[5, 4, 3]", "[5, 4, 13]")], "rod_model.levels.beam", "[5, 4, 13]", "from 1 to 12"),
+    ("half a level", [("[5, 4, 3]", "[5, 4.5, 3]")], "rod_model.levels.beam", "[5, 4.5, 3]", "a whole number"),
+    ("level of nothing", [("beam = [5", "bean = [5")], "rod_model.levels.bean", '"bean"', "did you mean 'beam'?"),
+    (
+        "levels in words",
+        [("[5, 4, 3]", '"high"')],
+        "rod_model.levels.beam",
+        '"high"',
+        "a list with one for each element",
+    ),
+    ("order too low", [("[6, 4, 4]", "1")], "rod_model.orders.beam", "1", "from 2 to 20"),
+    ("no level for the others", [("level = 3\n", "")], "rod_model.level", "no such key", "[rod_model.levels]"),
+]
 
-    start, _, rest = text.partition(": found ")
+
+@pytest.mark.parametrize(
+    ("text", "edits", "key", "found", "remedy"),
+    [pytest.param(GOOD, *mistake[1:], id=mistake[0]) for mistake in MISTAKES]
+    + [pytest.param(EVERYTHING, *mistake[1:], id=f"anywhere: {mistake[0]}") for mistake in MISTAKES_ANYWHERE],
+)
+def test_a_mistake_is_named_with_file_key_find_and_remedy(message, text, edits, key, found, remedy):
+    sentence = message(edited(*edits, text=text))
+
+    start, _, rest = sentence.partition(": found ")
     assert start.startswith(f"mine.toml: {key}")
     assert found in rest.partition("; ")[0]
     assert remedy in rest.partition("; ")[2]
-    assert "\n" not in text
+    assert "\n" not in sentence
+
+
+def test_a_case_that_nothing_holds_is_refused(message):
+    start, _, rest = EVERYTHING.partition("[[supports]]")
+    no_supports = start + "[[loads]]" + rest.partition("[[loads]]")[2]
+
+    assert message(no_supports).startswith("mine.toml: supports: found no such key; needed: one [[supports]] for each")
+
+
+def test_a_bed_alone_may_hold_a_case(scene):
+    start, _, rest = EVERYTHING.partition("[[supports]]")
+
+    assert scene(start + "[[beds]]" + rest.partition("[[beds]]")[2]).supports == ()
 
 
 def test_a_case_with_no_mistake_loads(tmp_path):
@@ -619,7 +873,7 @@ CURVED = single(
 
 @given(data=st.data())
 def test_no_edit_of_a_line_gives_anything_but_a_case_or_a_sentence(data, tmp_path_factory):
-    lines = data.draw(st.sampled_from([GOOD, CURVED])).splitlines()
+    lines = data.draw(st.sampled_from([GOOD, CURVED, EVERYTHING])).splitlines()
     index = data.draw(st.integers(0, len(lines) - 1))
     key = lines[index].partition("=")[0]
     value = data.draw(
