@@ -23,9 +23,10 @@ from cases.loads import Gravity, LineLoad, Load, Pressure, SectionForce, Section
 from cases.materials import Material, Orthotropic
 from cases.rods import ENDS, FACES, ROUNDED, End, Face, Rod, RodEnd, RodFace, not_beyond_end, require_flat_face
 from cases.sections import Box, Circle, Polygon, Rectangle, Ring, Section, section_reach
-from cases.supports import Bed, Clamp, Component, Joint, Support, check_bed, check_support, station_of
+from cases.supports import COMPONENTS, Bed, Clamp, Component, Joint, Support, check_bed, check_support, station_of
 
 __all__ = [
+    "COMPONENTS",
     "ENDS",
     "FACES",
     "Bed",

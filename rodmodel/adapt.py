@@ -1,4 +1,4 @@
-"""Borders where solutions are steep: short elements at clamps and at the ends of contact zones.
+"""Borders where solutions are steep: short elements at supports, joints and at the ends of contact zones.
 
 At a clamped section and under the end of another rod the three-dimensional solution is singular or nearly so; it decays
 over about one section height (Saint-Venant). Elements of a fifth of the height and of one height next to it, instead of
@@ -12,16 +12,17 @@ from dataclasses import replace
 import numpy as np
 
 from cases.scene import Rod, Scene
+from rodmodel.holds import held_sections
 from rodmodel.pairing import opposite_stations
 from rodmodel.shape import extents
 
-# Distances from a clamp and from a zone's end, in section heights.
-FROM_CLAMP = (0.2, 1.0)
+# Distances from a support or joint and from a zone's end, in section heights.
+FROM_SUPPORT = (0.2, 1.0)
 FROM_ZONE_END = (1.0 / 3.0,)
 
 
 def graded(scene: Scene) -> Scene:
-    """The scene with short elements added at clamps and at zone ends; no border is taken away."""
+    """The scene with short elements added at supports, joints and at zone ends; no border is taken away."""
     return replace(scene, rods=tuple(_graded_rod(scene, rod) for rod in scene.rods))
 
 
@@ -30,9 +31,8 @@ def _graded_rod(scene: Scene, rod: Rod) -> Rod:
     height = max(x_max - x_min, y_max - y_min)
     length = rod.element_borders[-1]
     new = list(rod.element_borders)
-    for support in scene.supports:
-        if support.rod == rod.name:
-            new += [height * part if support.end == "start" else length - height * part for part in FROM_CLAMP]
+    for held in held_sections(scene, rod):
+        new += [held.station + sign * height * part for sign in (-1.0, 1.0) for part in FROM_SUPPORT]
     for pair in scene.contacts:
         if rod.name not in (pair.first.rod, pair.second.rod):
             continue
@@ -42,6 +42,6 @@ def _graded_rod(scene: Scene, rod: Rod) -> Rod:
     # A border closer to a given one than the shortest element asked for would add nothing but a sliver.
     kept = list(rod.element_borders)
     for border in sorted(new):
-        if 0.0 < border < length and min(abs(border - other) for other in kept) > 0.5 * height * FROM_CLAMP[0]:
+        if 0.0 < border < length and min(abs(border - other) for other in kept) > 0.5 * height * FROM_SUPPORT[0]:
             kept.append(float(border))
     return replace(rod, element_borders=tuple(sorted(kept)))

@@ -6,8 +6,8 @@ nodes, and for the elements it lies in, a part on their bubbles. Compliances are
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Callable, Hashable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,8 +15,10 @@ from numpy.typing import NDArray
 from cases.scene import Rod, Scene
 from rodmodel.axial import shape_functions
 from rodmodel.centre_line import darboux
-from rodmodel.chain import Chain
-from rodmodel.mesh import RodMesh
+from rodmodel.chain import Chain, node_fields
+from rodmodel.face import Springs, bed_stiffness, springs_under
+from rodmodel.holds import Hold, extended, held_sections, hold, restricted
+from rodmodel.mesh import SAME_BORDER, RodMesh
 from rodmodel.section import Darboux, Fields, axial_modulus, per_axial_modulus, section_stiffness
 from rodmodel.stiffness import Element, ElementFamily, condensed_element, element_family
 
@@ -39,11 +41,20 @@ class ElementStore:
     _elements: dict[Hashable, Element] = field(default_factory=dict)
     chains: dict[str, Chain] = field(default_factory=dict)
 
-    def element(self, rod: Rod, turning: Darboux, fields: Fields, order: int, length: float) -> Element:
-        """Condensed element of the rod for unit axial modulus; `length` in mm, turning of its frame in rad/mm."""
-        kind = (rod.section, per_axial_modulus(rod.material), fields, order, turning)
+    def element(
+        self, rod: Rod, turning: Darboux, springs: Springs, fields: Fields, order: int, length: float
+    ) -> Element:
+        """Condensed element of the rod for unit axial modulus.
+
+        turning : of its frame, rad/mm
+        springs : beds under its faces, their moduli in units of the axial modulus
+        length : mm
+        """
+        kind = (rod.section, per_axial_modulus(rod.material), fields, order, turning, springs)
         if kind not in self._families:
             section = section_stiffness(rod.section, per_axial_modulus(rod.material), fields, turning)
+            if springs:
+                section = replace(section, s00=section.s00 + bed_stiffness(rod.section, springs, fields, turning))
             self._families[kind] = element_family(order, fields, section, reversible=turning[2] == 0.0)
         # Lengths that differ only by the round-off of the borders they come from are one length.
         key = (*kind, float(f"{length:.11e}"))
@@ -59,11 +70,13 @@ class AssembledRod:
     Attributes
     ----------
     borders : element borders, arc length, mm, shape (n_elements + 1,)
+    holds : how nodes are held, by their number from 0 at the start
     """
 
     rod: Rod
     borders: Array
     elements: tuple[Element, ...]
+    holds: Mapping[int, Hold]
     chain: Chain
 
     @property
@@ -81,6 +94,10 @@ class AssembledRod:
         """Highest order of any element."""
         return max(element.order for element in self.elements)
 
+    def node_places(self, element: int, side: int) -> IntArray:
+        """Where the fields of the node before (side 0) or after an element stand among the element's fields."""
+        return self.chain.fields[element + side].within(self.elements[element].fields)
+
     def locate(self, station: Array) -> tuple[IntArray, Array]:
         """Element index and xi of stations (mm); a station on a border belongs to the element before it."""
         index = np.clip(np.searchsorted(self.borders, station, side="left") - 1, 0, len(self.elements) - 1)
@@ -90,21 +107,28 @@ class AssembledRod:
 
 def assembled_rod(scene: Scene, rod: Rod, mirrors: Mirrors, mesh: RodMesh, store: ElementStore) -> AssembledRod:
     """Make (or fetch from `store`) the elements of the mesh and factorise the chain."""
-    clamped = {support.end for support in scene.supports if support.rod == rod.name}
     turning = darboux(rod.centre_line)
     elements = tuple(
-        store.element(rod, turning, Fields(int(level), *mirrors), int(order), float(length))
-        for level, order, length in zip(mesh.levels, mesh.orders, np.diff(mesh.borders), strict=True)
+        store.element(rod, turning, springs, Fields(int(level), *mirrors), int(order), float(length))
+        for level, order, length, springs in zip(
+            mesh.levels, mesh.orders, np.diff(mesh.borders), springs_under(scene, rod, mesh.borders), strict=True
+        )
     )
+    fields = node_fields(elements)
+    holds = {}
+    for held in held_sections(scene, rod):
+        node = int(np.abs(mesh.borders - held.station).argmin())
+        if abs(mesh.borders[node] - held.station) > SAME_BORDER:
+            raise ValueError(f"rod '{rod.name}': no element border at the support at {held.station:g} mm")
+        holds[node] = hold(scene, rod, held, fields[node])
     chain = Chain(
         elements,
         axial_modulus(rod.material),
-        "start" in clamped,
-        "end" in clamped,
+        {node: each.free for node, each in holds.items()},
         previous=store.chains.get(rod.name),
     )
     store.chains[rod.name] = chain
-    return AssembledRod(rod, mesh.borders, elements, chain)
+    return AssembledRod(rod, mesh.borders, elements, holds, chain)
 
 
 @dataclass(frozen=True, eq=False)
@@ -114,13 +138,13 @@ class Functionals:
     Attributes
     ----------
     nodal : L^-1 (c_n - K_nb K_bb^-1 c_b) with the chain's factor L, shape (n_carried, m)
-    ends : the condensed functionals on all fields of the first and the last node, held or not, shape (n_fields, m) each
+    held : the condensed functionals on all fields of every node that is held, by node, shape (n_fields, m) each
     bubbles : for each element with bubbles involved: its index, the functionals' numbers, L_bb^-1 c_b of shape
         (n_bubbles, how many)
     """
 
     nodal: Array
-    ends: tuple[Array, Array]
+    held: Mapping[int, Array]
     bubbles: tuple[tuple[int, IntArray, Array], ...]
 
 
@@ -166,9 +190,9 @@ def point_parts(assembled: AssembledRod, station: Array, direction: Callable[[Fi
 
 def functionals(assembled: AssembledRod, parts: Sequence[Part], count: int) -> Functionals:
     """Condense `count` functionals, given by the shares of the elements, and half solve them."""
-    chain, last = assembled.chain, len(assembled.elements) - 1
+    chain = assembled.chain
     nodal = np.zeros((chain.size, count))
-    ends = tuple(np.zeros((assembled.elements[index].fields.count, count)) for index in (0, last))
+    held = {node: np.zeros((len(each.given), count)) for node, each in assembled.holds.items()}
     bubbles = []
     for part in parts:
         element = assembled.elements[part.element]
@@ -179,20 +203,25 @@ def functionals(assembled: AssembledRod, parts: Sequence[Part], count: int) -> F
             on_nodes[:, :, inner] -= (element.half_coupling.T @ half).reshape(2, element.fields.count, -1)
             bubbles.append((part.element, part.columns[inner], half / np.sqrt(axial_modulus(assembled.rod.material))))
         for side in (0, 1):
-            nodal[chain.rows[part.element + side]][:, part.columns] += on_nodes[side, chain.ends[part.element][side]]
-        if part.element == 0:
-            ends[0][:, part.columns] += on_nodes[0]
-        if part.element == last:
-            ends[1][:, part.columns] += on_nodes[1]
-    return Functionals(chain.half_solve(nodal), (ends[0], ends[1]), tuple(bubbles))
+            node = part.element + side
+            nodal[chain.rows[node]][:, part.columns] += restricted(on_nodes[side], chain.ends[part.element][side])
+            if node in held:
+                held[node][:, part.columns] += on_nodes[side, assembled.node_places(part.element, side)]
+    return Functionals(chain.half_solve(nodal), held, tuple(bubbles))
 
 
 def combined(functionals: Functionals, weights: Array) -> Functionals:
     """Linear combinations of functionals; weights of shape (m, m_new)."""
     n_new = weights.shape[1]
     bubbles = tuple((index, np.arange(n_new), half @ weights[members]) for index, members, half in functionals.bubbles)
-    first, last = functionals.ends
-    return Functionals(functionals.nodal @ weights, (first @ weights, last @ weights), bubbles)
+    held = {node: values @ weights for node, values in functionals.held.items()}
+    return Functionals(functionals.nodal @ weights, held, bubbles)
+
+
+def added(first: Functionals, second: Functionals) -> Functionals:
+    """Sum of as many functionals on the same rod."""
+    held = {node: values + second.held[node] for node, values in first.held.items()}
+    return Functionals(first.nodal + second.nodal, held, (*first.bubbles, *second.bubbles))
 
 
 def compliance(functionals: Functionals) -> Array:
@@ -205,20 +234,84 @@ def compliance(functionals: Functionals) -> Array:
     return np.asarray(result)
 
 
-def coefficients(assembled: AssembledRod, load: Functionals) -> tuple[Array, ...]:
-    """Degrees of freedom under a load (m = 1), element by element, shape (order + 1, n_fields) each."""
+def held_parts(assembled: AssembledRod, displacement: Mapping[int, Array]) -> list[Part]:
+    """Stiffness times displacements of held nodes, m functionals as shares of the elements.
+
+    displacement : of the fields of some nodes, by node, shape (n_fields, m) each
+    """
+    modulus = axial_modulus(assembled.rod.material)
+    parts = []
+    for index, element in enumerate(assembled.elements):
+        moved = [side for side in (0, 1) if index + side in displacement]
+        if not moved:
+            continue
+        count = displacement[index + moved[0]].shape[1]
+        nodal = np.zeros((2, element.fields.count, count))
+        for side in moved:
+            nodal[side, assembled.node_places(index, side)] = displacement[index + side]
+        values = np.zeros((element.order + 1, element.fields.count, count))
+        values[:2] = (modulus * element.condensed @ nodal.reshape(-1, count)).reshape(2, -1, count)
+        parts.append(Part(index, np.arange(count), values))
+    return parts
+
+
+def given_displacement(assembled: AssembledRod) -> dict[int, Array]:
+    """What supports prescribe other than zero, by node, shape (n_fields,) each."""
+    return {node: each.given for node, each in assembled.holds.items() if each.given.any()}
+
+
+def prescribed_parts(assembled: AssembledRod, column: int) -> list[Part]:
+    """What the prescribed displacements do to the rest of the rod, as functional number `column`."""
+    given = {node: -displacement[:, None] for node, displacement in given_displacement(assembled).items()}
+    return [replace(part, columns=np.array([column])) for part in held_parts(assembled, given)]
+
+
+def on_given(assembled: AssembledRod, functionals: Functionals) -> Array:
+    """What the functionals make of the prescribed displacements alone, shape (m,)."""
+    result = np.zeros(functionals.nodal.shape[1])
+    for node, displacement in given_displacement(assembled).items():
+        result += displacement @ functionals.held[node]
+    return result
+
+
+def coefficients(assembled: AssembledRod, load: Functionals, held: Mapping[int, Array]) -> tuple[Array, ...]:
+    """Degrees of freedom under a load (m = 1), element by element, shape (order + 1, n_fields) each.
+
+    held : displacement of held nodes where it is not zero, by node, shape (n_fields,) each; its part in the load,
+        -K held, is in `load` already
+    """
     chain = assembled.chain
     carried = chain.back_solve(load.nodal)[:, 0]
     root = np.sqrt(axial_modulus(assembled.rod.material))
-    halves: dict[int, Array] = {}
-    for index, _, half in load.bubbles:
-        halves[index] = halves.get(index, 0.0) + half[:, 0] / root
+    halves = bubble_halves(load)
     result = []
     for index, element in enumerate(assembled.elements):
-        values = np.zeros((element.order + 1, element.fields.count))
+        count = element.fields.count
+        values = np.zeros((element.order + 1, count))
         for side in (0, 1):
-            values[side, chain.ends[index][side]] = carried[chain.rows[index + side]]
-        right = halves.get(index, 0.0) - element.half_coupling @ values[:2].ravel()
-        values[2:] = element.bubbles.back_solve(right[:, None]).reshape(-1, element.fields.count)
+            node = index + side
+            values[side] = extended(carried[chain.rows[node]], chain.ends[index][side], count)
+            if node in held:
+                values[side, assembled.node_places(index, side)] += held[node]
+        right = halves.get(index, 0.0) / root - element.half_coupling @ values[:2].ravel()
+        values[2:] = element.bubbles.back_solve(right[:, None]).reshape(-1, count)
         result.append(values)
     return tuple(result)
+
+
+def bubble_halves(load: Functionals) -> dict[int, Array]:
+    """L_bb^-1 c_b of a load (m = 1), by element, shape (n_bubbles,) each."""
+    halves: dict[int, Array] = {}
+    for index, _, half in load.bubbles:
+        halves[index] = halves.get(index, 0.0) + half[:, 0]
+    return halves
+
+
+def stored_energy(assembled: AssembledRod, load: Functionals, values: Sequence[Array]) -> float:
+    """Elastic energy of a rod and the beds under it in the state that `coefficients` gives, N mm."""
+    energy = sum(0.5 * float(half @ half) for half in bubble_halves(load).values())
+    modulus = axial_modulus(assembled.rod.material)
+    for element, each in zip(assembled.elements, values, strict=True):
+        nodal = each[:2].ravel()
+        energy += 0.5 * modulus * float(nodal @ element.condensed @ nodal)
+    return energy

@@ -13,7 +13,20 @@ from itertools import combinations
 import numpy as np
 from numpy.typing import NDArray
 
-from cases.scene import ContactPair, LineLoad, Rod, Scene
+from cases.scene import (
+    Bed,
+    Clamp,
+    ContactPair,
+    Gravity,
+    LineLoad,
+    Load,
+    Pressure,
+    Rod,
+    Scene,
+    SectionForce,
+    SectionMoment,
+    Support,
+)
 from rodmodel.mesh import SAME_BORDER, RodMesh, rod_mesh, split, stretched
 from rodmodel.pairing import opposite_stations
 
@@ -53,15 +66,26 @@ class RodBorders:
 
 
 def natural_mesh(scene: Scene, rod: Rod, level: int | Sequence[int], order: int | Sequence[int]) -> RodMesh:
-    """The rod's elements, split where they miss loads and zone ends: fields have kinks there."""
+    """The rod's elements, split where they miss loads, supports, beds and zone ends: fields have kinks there."""
     return split(rod_mesh(rod, level, order), _held_stations(scene, rod))
 
 
 def _held_stations(scene: Scene, rod: Rod) -> Array:
-    mine = [load for load in scene.loads if load.rod == rod.name]
-    loads = [at for load in mine for at in ((load.start, load.end) if isinstance(load, LineLoad) else (load.position,))]
+    acting = [*scene.loads, *scene.supports, *scene.beds]
+    acts = [at for each in acting if each.rod == rod.name for at in _acts_at(each)]
     zones = [station for pair in scene.contacts for station in _on_rod(scene, pair, rod, np.array(pair.zone))]
-    return np.array([0.0, rod.element_borders[-1], *loads, *zones])
+    return np.array([0.0, rod.element_borders[-1], *acts, *zones])
+
+
+def _acts_at(acting: Load | Clamp | Support | Bed) -> tuple[float, ...]:
+    """Sections where something on a rod acts, begins or ends; a clamp is at an end anyway."""
+    match acting:
+        case SectionForce() | SectionMoment() | Support():
+            return (acting.position,)
+        case LineLoad() | Pressure() | Bed():
+            return acting.start, acting.end
+        case Gravity() | Clamp():
+            return ()
 
 
 def _on_rod(scene: Scene, pair: ContactPair, rod: Rod, station: Array) -> Array:

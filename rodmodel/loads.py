@@ -8,11 +8,13 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from cases.scene import LineLoad, Load, Rod, Section, SectionForce, SectionMoment
+from cases.scene import Gravity, LineLoad, Load, Pressure, Rod, SectionForce, SectionMoment
 from rodmodel.assembly import AssembledRod, Part, point_parts
 from rodmodel.axial import gauss, shape_functions
-from rodmodel.centre_line import frames
-from rodmodel.section import STRAIGHT, Fields, U, V, W, product_quadrature, section_values
+from rodmodel.centre_line import darboux, frames
+from rodmodel.face import pressure_work
+from rodmodel.resultants import even_traction, linear_traction
+from rodmodel.section import Fields, product_quadrature, section_values
 
 Array = NDArray[np.float64]
 
@@ -26,43 +28,17 @@ def load_parts(assembled: AssembledRod, loads: Sequence[Load], column: int) -> l
     for load in loads:
         if load.rod != assembled.rod.name:
             continue
-        if isinstance(load, LineLoad):
-            parts += _line_load_parts(assembled, load, column)
-        else:
-            at_section = point_parts(assembled, np.array([load.position]), _section_load(assembled.rod, load))
-            parts += [replace(part, columns=np.array([column])) for part in at_section]
+        match load:
+            case SectionForce() | SectionMoment():
+                at_section = point_parts(assembled, np.array([load.position]), _section_load(assembled.rod, load))
+                parts += [replace(part, columns=np.array([column])) for part in at_section]
+            case LineLoad():
+                parts += _spread_parts(assembled, load.start, load.end, _line_force(assembled.rod, load), column)
+            case Pressure():
+                parts += _spread_parts(assembled, load.start, load.end, _face_force(assembled.rod, load), column)
+            case Gravity():
+                parts += _spread_parts(assembled, 0.0, assembled.rod.length, _weight(assembled.rod, load), column)
     return parts
-
-
-def even_traction(fields: Fields) -> Array:
-    """Work of a unit force along e1, e2, t, spread evenly over the section, on every field, shape (3, n_fields).
-
-    It works on the mean displacement alone, which is the coefficient of the constant function.
-    """
-    work = np.zeros((3, fields.count))
-    for component in (U, V, W):
-        index = fields.index(component, 0, 0)
-        if index is not None:
-            work[component, index] = 1.0
-    return work
-
-
-def linear_traction(section: Section, fields: Fields) -> Array:
-    """Work of a unit moment about e1, e2, t on every field, shape (3, n_fields).
-
-    Bending moments as a normal traction linear in x and y, torque as T / I_p (-y, x).
-    """
-    x, y, weight = product_quadrature(section, fields.level, STRAIGHT)
-    values = section_values(section, fields, x, y) * weight
-    xx, xy, yy = weight @ (x * x), weight @ (x * y), weight @ (y * y)
-    # t = a x + b y with int t y = M1 and -int t x = M2
-    slopes = np.linalg.solve(np.array([[xy, yy], [-xx, -xy]]), np.eye(2))
-    is_u, is_v, is_w = (fields.indices(component) for component in (U, V, W))
-    work = np.zeros((3, fields.count))
-    work[:2, is_w] = (slopes.T @ np.array([x, y])) @ values[is_w].T
-    work[2, is_u] = values[is_u] @ (-y) / (xx + yy)
-    work[2, is_v] = values[is_v] @ x / (xx + yy)
-    return work
 
 
 def _section_load(rod: Rod, load: SectionForce | SectionMoment) -> Callable[[Fields], Array]:
@@ -74,22 +50,50 @@ def _section_load(rod: Rod, load: SectionForce | SectionMoment) -> Callable[[Fie
     return lambda fields: (force @ even_traction(fields))[:, None]
 
 
-def _line_load_parts(assembled: AssembledRod, load: LineLoad, column: int) -> list[Part]:
-    """A line load covers whole elements: its ends are element borders."""
+# Work of a load per arc length of the centre line on every field, at stations; shape (n_stations, n_fields).
+Density = Callable[[Fields, Array], Array]
+
+
+def _spread_parts(assembled: AssembledRod, start: float, end: float, density: Density, column: int) -> list[Part]:
+    """A load along the rod covers whole elements: its ends are element borders."""
     parts = []
     for index, element in enumerate(assembled.elements):
         left, right = assembled.borders[index : index + 2]
-        if not load.start < 0.5 * (left + right) < load.end:
+        if not start < 0.5 * (left + right) < end:
             continue
         xi, weight = gauss(element.order + EXTRA_POINTS)
         station = 0.5 * (left + right) + 0.5 * (right - left) * xi
-        force = frames(assembled.rod.centre_line, station) @ load.force
-        values = np.einsum(
-            "aq,q,qc,cf->af",
-            shape_functions(element.order, xi),
-            0.5 * (right - left) * weight,
-            force,
-            even_traction(element.fields),
-        )
+        along = shape_functions(element.order, xi) * (0.5 * (right - left) * weight)
+        values = along @ density(element.fields, station)
         parts.append(Part(index, np.array([column]), values[:, :, None]))
     return parts
+
+
+def _line_force(rod: Rod, load: LineLoad) -> Density:
+    return lambda fields, station: frames(rod.centre_line, station) @ load.force @ even_traction(fields)
+
+
+def _face_force(rod: Rod, load: Pressure) -> Density:
+    turning = darboux(rod.centre_line)
+
+    def density(fields: Fields, station: Array) -> Array:
+        work = load.pressure * pressure_work(rod.section, load.face.face, fields, turning)
+        return np.broadcast_to(work, (len(station), fields.count))
+
+    return density
+
+
+def _weight(rod: Rod, load: Gravity) -> Density:
+    if rod.material.density is None:
+        raise ValueError(f"rod '{rod.name}': gravity needs a density")
+    per_volume = rod.material.density * np.asarray(load.acceleration)
+    turning = darboux(rod.centre_line)
+
+    def density(fields: Fields, station: Array) -> Array:
+        x, y, weight = product_quadrature(rod.section, fields.level, turning)
+        # A unit force per volume along each axis: sqrt(g) makes it act off the centre line of a curved rod.
+        volume = section_values(rod.section, fields, x, y) @ (weight * (1.0 - turning[1] * x + turning[0] * y))
+        work = np.where(np.arange(3)[:, None] == fields.table[0], volume, 0.0)
+        return np.asarray(frames(rod.centre_line, station) @ per_volume @ work)
+
+    return density

@@ -8,15 +8,17 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from cases.scene import End, Rod, Scene, Section
+from cases.scene import Rod, Scene
 from rodmodel.assembly import AssembledRod
 from rodmodel.axial import shape_function_slopes, shape_functions
+from rodmodel.beds import BedForces, bed_forces
 from rodmodel.centre_line import centre_points, darboux, frames, global_points
 from rodmodel.edges import Stretch
+from rodmodel.mesh import SAME_BORDER
 from rodmodel.pairing import face_axes, facing_points
 from rodmodel.profile import ContactProfile, pressure_profile
+from rodmodel.resultants import rigid_motions
 from rodmodel.section import (
-    STRAIGHT,
     Fields,
     U,
     V,
@@ -27,7 +29,7 @@ from rodmodel.section import (
     section_values,
     strain_operators,
 )
-from rodmodel.system import ContactSystem
+from rodmodel.system import ContactSystem, RodState
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -79,8 +81,8 @@ class Solution:
     stretches : parts of the zones found in contact, with the borders that ended on their edges
     system : rods and contact points on the final borders
     force : at every contact point of the system, N
-    coefficients : by rod name, degrees of freedom of every element, shape (order + 1, n_fields) each
-    strain_energy : of all rods, half the work of loads and contact forces on the final state, N mm
+    states : by rod name, what acts on it in all, and its degrees of freedom
+    stored_energy : of all rods and beds, N mm
     cost : unknowns and seconds
     """
 
@@ -90,9 +92,15 @@ class Solution:
     stretches: tuple[Stretch, ...]
     system: ContactSystem
     force: Array
-    coefficients: Mapping[str, tuple[Array, ...]]
-    strain_energy: float
+    states: Mapping[str, RodState]
+    stored_energy: float
     cost: Cost
+
+    @property
+    def strain_energy(self) -> float:
+        """Elastic energy of all rods, without that of beds and contact, N mm."""
+        beds = (self.bed_forces(number, np.empty(0)).energy.sum() for number in range(len(self.scene.beds)))
+        return self.stored_energy - float(sum(beds))
 
     def frame(self, rod: str, station: Array) -> tuple[Array, Array]:
         """Points of the centre line, global, mm, shape (3, n), and frames there, rows e1, e2, t, shape (n, 3, 3)."""
@@ -141,20 +149,42 @@ class Solution:
             result[:, members] = sums_0 @ psi + sums_1 @ slope
         return result
 
-    def reaction(self, rod: str, end: End) -> Array:
-        """Force (N) and moment about the section's centre (N mm) of a clamp on the rod, global, shape (6,).
+    def reaction(self, rod: str, station: float) -> Array:
+        """Force (N) and moment about the section's centre (N mm) of a support or joint on the rod, global, shape (6,).
 
-        The residual of the end section's equations: exact in the sense of virtual work.
+        station : of the section that is held, mm
+
+        The residual of the section's equations: exact in the sense of virtual work. Zero where nothing holds the rod.
         """
-        assembled = self.system.rods[rod]
-        load = self.system.total_load(rod, self.force)
-        at_end = int(end == "end")
-        element, values = assembled.elements[-at_end], self.coefficients[rod][-at_end]
-        rows = element.condensed.reshape(2, element.fields.count, -1)[at_end]
-        residual = axial_modulus(assembled.rod.material) * (rows @ values[:2].ravel()) - load.ends[at_end][:, 0]
-        axes = frames(assembled.rod.centre_line, assembled.borders[[-at_end]])[0]
-        local = _rigid_motions(assembled.rod.section, element.fields) @ residual
+        assembled, state = self.system.rods[rod], self.states[rod]
+        node = int(np.abs(assembled.borders - station).argmin())
+        if node not in assembled.holds or abs(assembled.borders[node] - station) > SAME_BORDER:
+            return np.zeros(6)
+        fields = assembled.chain.fields[node]
+        residual = -state.load.held[node][:, 0]
+        for index, side in ((node - 1, 1), (node, 0)):
+            if not 0 <= index < len(assembled.elements):
+                continue
+            element, nodal = assembled.elements[index], state.coefficients[index][:2].copy()
+            for each in (0, 1):
+                if index + each in state.held:
+                    nodal[each, assembled.node_places(index, each)] -= state.held[index + each]
+            rows = element.condensed.reshape(2, element.fields.count, -1)[side, assembled.node_places(index, side)]
+            residual += axial_modulus(assembled.rod.material) * (rows @ nodal.ravel())
+        axes = frames(assembled.rod.centre_line, assembled.borders[[node]])[0]
+        local = rigid_motions(assembled.rod.section, fields) @ residual
         return np.concatenate([axes.T @ local[:3], axes.T @ local[3:]])
+
+    def bed_forces(self, bed: int, borders: Array) -> BedForces:
+        """Forces of the scene's bed number `bed` on its rod, as points: several between every two of `borders` (mm)."""
+        under = self.scene.beds[bed]
+        assembled = self.system.rods[under.rod]
+        cuts = np.concatenate([borders, assembled.borders])
+
+        def displacement_at(points: Array) -> Array:
+            return self.displacement_at(under.rod, points)
+
+        return bed_forces(under, assembled.rod, displacement_at, cuts, assembled.level, assembled.order)
 
     def contact_points(self, pair: str) -> ContactPoints:
         """State of every contact point of the pair, mirrored where symmetry carried one half."""
@@ -208,7 +238,7 @@ class Solution:
         for (fields, order), numbers in kinds.items():
             members = np.flatnonzero(np.isin(index, numbers))
             place = np.searchsorted(numbers, index[members])
-            values = np.stack([self.coefficients[assembled.rod.name][number] for number in numbers])[place]
+            values = np.stack([self.states[assembled.rod.name].coefficients[number] for number in numbers])[place]
             jacobian = 2.0 / np.diff(assembled.borders)[index[members]]
             psi = np.einsum("an,naf->fn", shape_functions(order, xi[members]), values)
             slope = np.einsum("an,naf->fn", shape_function_slopes(order, xi[members]), values) * jacobian
@@ -226,22 +256,3 @@ def _resultant_operators(rod: Rod, fields: Fields) -> tuple[Array, Array]:
     lever[3, 2], lever[4, 2], lever[5, 3], lever[5, 4] = y, -x, x, -y
     sums = np.einsum("rcp,cd,p->rpd", lever, elasticity_matrix(rod.material, fields.level), weight).reshape(6, -1)
     return sums @ b0.reshape(-1, fields.count), sums @ b1.reshape(-1, fields.count)
-
-
-def _rigid_motions(section: Section, fields: Fields) -> Array:
-    """Unit translations along, then rotations about e1, e2, t of a section, as its fields, shape (6, n_fields)."""
-    x, y, weight = product_quadrature(section, fields.level, STRAIGHT)
-    values = section_values(section, fields, x, y) * (weight / weight.sum())
-    motions = np.zeros((6, fields.count))
-    for motion, component, function in (
-        (0, U, np.ones_like(x)),
-        (1, V, np.ones_like(x)),
-        (2, W, np.ones_like(x)),
-        (3, W, y),
-        (4, W, -x),
-        (5, U, -y),
-        (5, V, x),
-    ):
-        mine = fields.indices(component)
-        motions[motion, mine] = values[mine] @ function
-    return motions

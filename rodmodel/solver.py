@@ -9,11 +9,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from cases.scene import Rod, Scene, SceneError
-from rodmodel.assembly import ElementStore, coefficients, compliance
+from cases.scene import Rod, Scene
+from rodmodel.assembly import ElementStore, stored_energy
 from rodmodel.borders import Edge, border_plan, natural_mesh, placed_meshes
 from rodmodel.contact import unilateral_contact
 from rodmodel.edges import EdgeSearch, Stretch, find_edges, moved, moving_edges, same_topology, stretches_in_contact
+from rodmodel.loose import require_held
 from rodmodel.mesh import RodMesh
 from rodmodel.solution import Cost, Solution
 from rodmodel.symmetry import scene_mirrors
@@ -43,18 +44,13 @@ def solve(scene: Scene, level: Grades = 5, order: Grades = 6) -> Solution:
     Raises
     ------
     SceneError
-        if a rod is not held by any support.
+        if supports, joints and beds leave a rod loose.
     ValueError
         if a level is below 1 or an order below 2, or there is not one for each element.
     """
-    for rod in scene.rods:
-        if not any(support.rod == rod.name for support in scene.supports):
-            found = f"no clamp on rod '{rod.name}'"
-            raise SceneError(
-                "supports", found, "the rod model needs a clamp on every rod, or its stiffness is singular"
-            )
     begin = time.perf_counter()
     mirrors = scene_mirrors(scene)
+    require_held(scene, mirrors)
     store = ElementStore()
 
     def system_on(meshes: dict[str, RodMesh], within: dict[str, Array] | None = None) -> ContactSystem:
@@ -64,9 +60,10 @@ def solve(scene: Scene, level: Grades = 5, order: Grades = 6) -> Solution:
     system = system_on(natural)
     ready = time.perf_counter()
     contact = moved_contact(scene, natural, system, system_on)
-    loads = {name: contact.system.total_load(name, contact.force) for name in contact.system.rods}
-    values = {name: coefficients(contact.system.rods[name], load) for name, load in loads.items()}
-    energy = 0.5 * sum(float(compliance(load)[0, 0]) for load in loads.values())
+    states = contact.system.states(contact.force)
+    energy = sum(
+        stored_energy(contact.system.rods[name], state.load, state.coefficients) for name, state in states.items()
+    )
     unknowns = sum(assembled.unknowns for assembled in contact.system.rods.values())
     cost = Cost(unknowns, ready - begin, time.perf_counter() - ready)
     return Solution(
@@ -76,7 +73,7 @@ def solve(scene: Scene, level: Grades = 5, order: Grades = 6) -> Solution:
         contact.stretches,
         contact.system,
         contact.force,
-        values,
+        states,
         energy,
         cost,
     )

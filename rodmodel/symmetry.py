@@ -9,9 +9,21 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from cases.scene import Load, Rod, Scene, SectionMoment
+from cases.scene import (
+    Clamp,
+    Gravity,
+    LineLoad,
+    Load,
+    Pressure,
+    Rod,
+    Scene,
+    SectionForce,
+    SectionMoment,
+    Support,
+    Vector,
+)
 from rodmodel.assembly import Mirrors
-from rodmodel.centre_line import frame, screw_motion
+from rodmodel.centre_line import frame, frames, screw_motion
 from rodmodel.pairing import face_axes
 from rodmodel.shape import mirror_planes
 
@@ -40,8 +52,11 @@ def _is_mirror_plane(scene: Scene, normal: Array) -> bool:
         return False
     if not all(_keeps(load, normal) for load in scene.loads):
         return False
-    sides = [side for pair in scene.contacts for side in (pair.first, pair.second)]
-    return all(abs(normal @ face_axes(scene.rod(side.rod), side.face).normal) < TOLERANCE for side in sides)
+    if not all(_holds(support, scene.rod(support.rod), normal) for support in scene.supports):
+        return False
+    faces = [side for pair in scene.contacts for side in (pair.first, pair.second)]
+    faces += [bed.face for bed in scene.beds] + [load.face for load in scene.loads if isinstance(load, Pressure)]
+    return all(abs(normal @ face_axes(scene.rod(face.rod), face.face).normal) < TOLERANCE for face in faces)
 
 
 def _lies_in(rod: Rod, origin: Array, normal: Array) -> bool:
@@ -58,9 +73,35 @@ def _lies_in(rod: Rod, origin: Array, normal: Array) -> bool:
 
 def _keeps(load: Load, normal: Array) -> bool:
     """Whether reflection leaves a load as it is: no force across the plane, no moment but across it."""
-    vector = np.asarray(load.moment if isinstance(load, SectionMoment) else load.force)
-    across = abs(float(normal @ vector))
+    match load:
+        case SectionForce() | LineLoad():
+            return _lies(load.force, normal)
+        case Gravity():
+            return _lies(load.acceleration, normal)
+        case SectionMoment():
+            return _crosses(load.moment, normal)
+        case Pressure():
+            return True  # its face is looked at
+
+
+def _holds(support: Clamp | Support, rod: Rod, normal: Array) -> bool:
+    """Whether reflection leaves what a support prescribes as it is."""
+    if isinstance(support, Clamp):
+        return _lies(support.displacement, normal) and _crosses(support.rotation, normal)
+    axes = frames(rod.centre_line, np.array([support.position]))[0]
+    for component, value in zip(support.components, support.displacement, strict=False):
+        vector = value * axes["xys".index(component[-1])]
+        if not (_crosses(vector, normal) if component.startswith("turn") else _lies(vector, normal)):
+            return False
+    return True
+
+
+def _lies(vector: Vector | Array, normal: Array) -> bool:
+    """Whether a vector lies in the plane."""
+    return abs(float(normal @ vector)) <= TOLERANCE * float(np.linalg.norm(vector))
+
+
+def _crosses(vector: Vector | Array, normal: Array) -> bool:
+    """Whether a vector stands on the plane."""
     size = float(np.linalg.norm(vector))
-    if isinstance(load, SectionMoment):
-        return size - across <= TOLERANCE * size
-    return across <= TOLERANCE * size
+    return size - abs(float(normal @ vector)) <= TOLERANCE * size

@@ -15,12 +15,18 @@ from rodmodel.assembly import (
     Functionals,
     Mirrors,
     Part,
+    added,
     assembled_rod,
+    coefficients,
     combined,
     compliance,
     functionals,
+    given_displacement,
+    on_given,
     point_parts,
+    prescribed_parts,
 )
+from rodmodel.joints import Skeleton, skeleton
 from rodmodel.loads import load_parts
 from rodmodel.mesh import SAME_BORDER, RodMesh
 from rodmodel.pairing import (
@@ -38,6 +44,22 @@ IntArray = NDArray[np.int64]
 
 
 @dataclass(frozen=True, eq=False)
+class RodState:
+    """A rod under its loads, contact forces and joints.
+
+    Attributes
+    ----------
+    load : all that acts on it as one functional, what held nodes do to the rest included
+    held : displacement of held nodes where it is not zero, by node, shape (n_fields,) each
+    coefficients : degrees of freedom of every element, shape (order + 1, n_fields) each
+    """
+
+    load: Functionals
+    held: Mapping[int, Array]
+    coefficients: tuple[Array, ...]
+
+
+@dataclass(frozen=True, eq=False)
 class ContactSystem:
     """Gap d = initial_gap + compliance @ force over the contact points of all pairs, and what it was made from.
 
@@ -49,8 +71,10 @@ class ContactSystem:
     functionals : by rod name, -u_n of its contact points (n the outward normal of its own face), and last its loads
     places : by rod name, where in the vector its contact points are
     compliance : C, mm/N, shape (n, n)
-    initial_gap : gap under the given loads without contact, mm, shape (n,)
+    initial_gap : gap under the given loads and prescribed displacements without contact, mm, shape (n,)
     spring : c_n w, N/mm, shape (n,)
+    skeleton : the scene's joints, if it has any
+    on_joints : contact points, and last the loads, on the motions of the joints, half solved, shape (n_motions, n + 1)
     """
 
     scene: Scene
@@ -62,11 +86,23 @@ class ContactSystem:
     compliance: Array
     initial_gap: Array
     spring: Array
+    skeleton: Skeleton | None
+    on_joints: Array
 
-    def total_load(self, rod: str, force: Array) -> Functionals:
-        """Given loads and contact forces on a rod as one functional; its coefficients are the solution."""
-        weights = np.append(force[self.places[rod]], 1.0)
-        return combined(self.functionals[rod], weights[:, None])
+    def states(self, force: Array) -> dict[str, RodState]:
+        """The rods under the given loads and contact forces (N, shape (n,)), by name."""
+        weights = np.append(force, 1.0)
+        motion = np.empty(0) if self.skeleton is None else self.skeleton.motion(self.on_joints @ weights)
+        result = {}
+        for name, assembled in self.rods.items():
+            load = combined(self.functionals[name], np.append(force[self.places[name]], 1.0)[:, None])
+            held = given_displacement(assembled)
+            if self.skeleton is not None and name in self.skeleton.rods:
+                joined = self.skeleton.rods[name]
+                load = added(load, combined(joined.response, -motion[:, None]))
+                held |= {node: unit @ motion for node, unit in joined.motions.items()}
+            result[name] = RodState(load, held, coefficients(assembled, load, held))
+        return result
 
 
 def contact_system(
@@ -92,15 +128,24 @@ def contact_system(
     for pair in scene.contacts:
         gap[points[pair.name]] = pair.gap
         spring[points[pair.name]] = pair.penalty * grids[pair.name].weight.ravel()
+    joints = skeleton(scene, mirrors, rods)
+    on_joints = np.zeros((0 if joints is None else len(joints.factor), ends[-1] + 1))
     found, places = {}, {}
     for name, assembled in rods.items():
         parts, place = _gap_parts(scene, assembled, grids, points)
         parts += load_parts(assembled, scene.loads, column=len(place))
+        parts += prescribed_parts(assembled, column=len(place))
         found[name], places[name] = functionals(assembled, parts, count=len(place) + 1), place
         response = compliance(found[name])
         matrix[np.ix_(place, place)] += response[:-1, :-1]
-        gap[place] += response[:-1, -1]
-    return ContactSystem(scene, rods, grids, points, found, places, matrix, gap, spring)
+        gap[place] += response[:-1, -1] + on_given(assembled, found[name])[:-1]
+        if joints is not None and name in joints.rods:
+            on_joints[:, [*place, -1]] += joints.rods[name].on_joints(found[name])
+    if joints is not None:
+        on_joints = joints.half_solve(on_joints)
+        matrix += on_joints[:, :-1].T @ on_joints[:, :-1]
+        gap += on_joints[:, :-1].T @ on_joints[:, -1]
+    return ContactSystem(scene, rods, grids, points, found, places, matrix, gap, spring, joints, on_joints)
 
 
 def _grid(

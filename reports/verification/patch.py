@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from cases.scene import Material, Rectangle
 from reports.verification.check import Check, Group, Reference, elasticity
 from rodmodel.axial import shape_functions
-from rodmodel.loads import even_traction, linear_traction
+from rodmodel.resultants import even_traction, linear_traction
 from rodmodel.section import STRAIGHT, Fields, U, V, W, section_stiffness, section_values
 from rodmodel.stiffness import stiffness_terms
 

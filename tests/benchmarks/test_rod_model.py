@@ -56,7 +56,7 @@ class TestParts:
 
     def test_one_chain(self, benchmark: BenchmarkFixture, system: ContactSystem) -> None:
         elements = system.rods["lower"].elements
-        benchmark(lambda: Chain(elements, 200e3, True, False))
+        benchmark(lambda: Chain(elements, 200e3, {0: np.empty(0, dtype=np.int64)}))
 
     def test_contact_points_of_one_rod(self, benchmark: BenchmarkFixture, system: ContactSystem) -> None:
         rod, grid = system.rods["lower"], system.grids["overlap"]

@@ -75,7 +75,7 @@ def test_coefficients_answer_the_load_they_were_solved_for(scene: rm.Scene) -> N
     assembled = assembled_rod(scene, scene.rods[0], FULL, uniform(BORDERS, 2, order), ElementStore())
     load = functionals(assembled, point_parts(assembled, station, lambda _: direction), 1)
 
-    values = coefficients(assembled, load)
+    values = coefficients(assembled, load, {})
 
     index, xi = assembled.locate(station)
     moved = shape_functions(order, xi)[:, 0] @ values[index[0]] @ direction[:, 0]

@@ -63,7 +63,7 @@ def test_resultants_balance_the_load(cantilever: Callable[..., rm.Scene]) -> Non
 def test_reaction_balances_the_load_to_round_off(cantilever: Callable[..., rm.Scene]) -> None:
     solution = rm.solve(cantilever((300.0, -1000.0, 50.0)), level=3, order=4)
     expected = [-300.0, 1000.0, -50.0, 0.0, 50.0 * 300.0, 1000.0 * 300.0]
-    np.testing.assert_allclose(solution.reaction("bar", "start"), expected, rtol=1e-9, atol=1e-5)
+    np.testing.assert_allclose(solution.reaction("bar", 0.0), expected, rtol=1e-9, atol=1e-5)
 
 
 def test_energy_is_half_the_work_of_the_load(cantilever: Callable[..., rm.Scene]) -> None:
