@@ -150,7 +150,7 @@ class Solution:
             raise ValueError(f"station: found {station:g}; clamps are at 0 and at {length:g} mm")
         return np.asarray(self.rods[rod].reaction[0 if station == 0.0 else 1])
 
-    def bed_forces(self, bed: int, borders: Array) -> NoReturn:
+    def bed_forces(self, bed: int, borders: Array) -> NoReturn:  # noqa: ARG002 (as the protocol has it)
         """No scene with beds is solved (`scope`), so that there is none to answer for: IndexError."""
         raise IndexError(f"bed: found {bed}; the scene has none")
 

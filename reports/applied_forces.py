@@ -13,18 +13,16 @@ from numpy.typing import NDArray
 
 from cases.scene import (
     ENDS,
-    Box,
     Gravity,
     LineLoad,
     Load,
     Pressure,
-    Rectangle,
     Rod,
     SectionForce,
     SectionMoment,
     station_of,
 )
-from reports.geometry import stations_of_points
+from reports.geometry import face_extent, stations_of_points
 from reports.second_moments import area_and_second_moments
 from reports.solution import Array, Solution
 
@@ -109,7 +107,7 @@ def magnitude(load: Load, rod: Rod) -> float:
         case LineLoad():
             return float(np.linalg.norm(load.force)) * (load.end - load.start)
         case Pressure():
-            _, width = _face_extent(rod, load.face.face)
+            _, width = face_extent(rod, load.face.face)
             return abs(load.pressure) * width * (load.end - load.start)
         case Gravity():
             return float(np.linalg.norm(_weight_per_length(load, rod))) * rod.length
@@ -193,7 +191,7 @@ def _pressure(pieces: _Pieces, load: Pressure, rod: Rod) -> AppliedForces:
 
     dA is linear across the face and its moment quadratic, so that two Gauss points across are exact.
     """
-    offset, width = _face_extent(rod, load.face.face)
+    offset, width = face_extent(rod, load.face.face)
     upright = load.face.face in ("top", "bottom")
     side = 1.0 if load.face.face in ("top", "right") else -1.0
     normal, lateral = (1, 0) if upright else (0, 1)
@@ -207,14 +205,6 @@ def _pressure(pieces: _Pieces, load: Pressure, rod: Rod) -> AppliedForces:
         positions.append(pieces.position + out)
         forces.append(-load.pressure * side * area * (0.5 * width * pieces.weight))
     return _resultants(pieces, np.concatenate(positions, axis=2), np.concatenate(forces, axis=2))
-
-
-def _face_extent(rod: Rod, face: str) -> tuple[float, float]:
-    """Distance of a face from the centre line and its width, mm."""
-    if not isinstance(rod.section, Rectangle | Box):
-        raise TypeError(f"a {type(rod.section).__name__.lower()} has no flat faces")
-    width, height = rod.section.width, rod.section.height
-    return (height / 2.0, width) if face in ("top", "bottom") else (width / 2.0, height)
 
 
 def _gravity(pieces: _Pieces, load: Gravity, rod: Rod) -> AppliedForces:

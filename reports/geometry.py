@@ -1,10 +1,10 @@
-"""Where points of a scene lie along its rods and global axes, by the frames that a solution tells."""
+"""Where points of a scene lie along its rods and global axes, by the frames that a solution tells; faces of rods."""
 
 from __future__ import annotations
 
 import numpy as np
 
-from cases.scene import ContactPair
+from cases.scene import Box, ContactPair, Face, Rectangle, Rod
 from reports.sections import outline
 from reports.solution import Array, Solution
 
@@ -17,6 +17,14 @@ def stations_of_points(solution: Solution, rod: str, points: Array) -> Array:
     origin, axes = solution.frame(rod, np.zeros(1))
     station: Array = axes[0, 2] @ (points - origin)
     return station
+
+
+def face_extent(rod: Rod, face: Face) -> tuple[float, float]:
+    """Distance of a flat lateral face from the centre line and its width, mm."""
+    if not isinstance(rod.section, Rectangle | Box):
+        raise TypeError(f"a {type(rod.section).__name__.lower()} has no flat faces")
+    width, height = rod.section.width, rod.section.height
+    return (height / 2.0, width) if face in ("top", "bottom") else (width / 2.0, height)
 
 
 def pair_axis(solution: Solution, pair: ContactPair) -> int:

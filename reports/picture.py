@@ -13,16 +13,26 @@ from typing import Any
 import numpy as np
 import pyvista
 
-from cases.scene import Polygon, Rod, Scene, SectionMoment
+from cases.scene import Clamp, Polygon, Rod, Scene
+from reports.geometry import face_extent
 from reports.quantities import Quantities, RodQuantities
 from reports.sections import outline
 from reports.solution import Array
-from reports.view import between, extent, load_places, load_stations, load_text, load_vector, view_plane
+from reports.view import (
+    SPRINGS,
+    between,
+    extent,
+    face_normals,
+    held_directions,
+    load_arrows,
+    view_plane,
+)
 
 # The largest displacement is drawn about this long, as a part of the scene's extent.
 DRAWN_DISPLACEMENT = 0.08
 SIZE = (1800, 700)
 INK = "#1f2933"
+HOLD = "#b8c0c8"
 
 
 @dataclass(frozen=True)
@@ -72,29 +82,37 @@ def deformed_surface(rod: Rod, quantities: RodQuantities, factor: float, shift: 
 def drawn_shifts(scene: Scene, quantities: Quantities, factor: float) -> dict[str, Array]:
     """How far each rod is moved so that gaps are magnified like displacements, mm.
 
-    The second rod of a pair is moved along the first face's normal from the drawn to the magnified given gap.
+    The second rod of a pair is moved along the first face's normal from the drawn to the magnified given gap, with the
+    rods that it is joined to; the gap between rods that are joined to each other stays as drawn.
     """
     shifts = {rod.name: np.zeros(3) for rod in scene.rods}
+    groups = _joined(scene)
     for pair in scene.contacts:
         first, second = scene.rod(pair.first.rod), scene.rod(pair.second.rod)
-        normal, half = _face(first, quantities.rod(first.name), pair.first.face)
-        _, other_half = _face(second, quantities.rod(second.name), pair.second.face)
-        apart = np.subtract(second.centre_line.start, first.centre_line.start)
+        if groups[first.name] == groups[second.name]:
+            continue
+        normal = face_normals(quantities.rod(first.name), pair.first.face, np.zeros(1))[:, 0]
+        half, other_half = (face_extent(scene.rod(face.rod), face.face)[0] for face in (pair.first, pair.second))
+        apart = np.subtract(second.centre_line.end_points[0], first.centre_line.end_points[0])
         drawn = float(normal @ apart) - half - other_half
-        shifts[second.name] = shifts[first.name] + (factor * pair.gap - drawn) * normal
+        move = shifts[first.name] + (factor * pair.gap - drawn) * normal - shifts[second.name]
+        for name in shifts:
+            if groups[name] == groups[second.name]:
+                shifts[name] = shifts[name] + move
     return shifts
 
 
-def _face(rod: Rod, found: RodQuantities, face: str) -> tuple[Array, float]:
-    """Outward normal of a face of a straight rod and its distance from the centre line, mm."""
-    first, second, _ = found.axes[0]
-    directions = {"top": second, "bottom": -second, "right": first, "left": -first}
-    across = outline(rod.section)[:, 1 if face in ("top", "bottom") else 0]
-    return directions[face], float(across.max())
+def _joined(scene: Scene) -> dict[str, int]:
+    """Number of the group of joined rods that each rod belongs to."""
+    groups = {rod.name: number for number, rod in enumerate(scene.rods)}
+    for joint in scene.joints:
+        members = {groups[end.rod] for end in joint.ends}
+        groups = {name: min(members) if group in members else group for name, group in groups.items()}
+    return groups
 
 
 def draw(scene: Scene, quantities: Quantities) -> Picture:
-    """Draw the deformed bars, their undeformed outlines, clamps and loads.
+    """Draw the deformed bars, their undeformed outlines, supports, joints, beds and loads.
 
     Raises
     ------
@@ -127,7 +145,9 @@ def draw(scene: Scene, quantities: Quantities) -> Picture:
         still = deformed_surface(rod, found, 0.0, np.zeros(3))
         before = _closed(still, np.zeros(still.shape[1]), concave).extract_feature_edges(40.0)
         plotter.add_mesh(before, color="#8a94a0", line_width=1.5, opacity=0.7)
-    _add_supports(plotter, scene, quantities, shifts)
+    _add_supports(plotter, scene, quantities, factor, shifts)
+    _add_joints(plotter, scene, quantities, factor, shifts)
+    _add_beds(plotter, scene, quantities, factor, shifts)
     _add_loads(plotter, scene, quantities, factor, shifts)
     right, up = view_plane(scene, quantities)
     size = extent(quantities)
@@ -178,43 +198,114 @@ def _closed(corners: Array, values: Array, concave: bool) -> pyvista.PolyData:
     return bar.triangulate() if concave else bar
 
 
-def _add_supports(plotter: pyvista.Plotter, scene: Scene, quantities: Quantities, shifts: dict[str, Array]) -> None:
-    """A plate behind each clamped end."""
-    for clamp in scene.supports:
-        rod = scene.rod(clamp.rod)
-        index = 0 if clamp.end == "start" else -1
-        axes, end = quantities.rod(rod.name).axes[index], quantities.rod(rod.name).position[:, index]
-        outward = -axes[2] if clamp.end == "start" else axes[2]
+def _add_supports(
+    plotter: pyvista.Plotter, scene: Scene, quantities: Quantities, factor: float, shifts: dict[str, Array]
+) -> None:
+    """A plate behind each clamped end; a cone for each held displacement, a collar around what is kept from turning."""
+    up = view_plane(scene, quantities)[1]
+    for support in scene.supports:
+        rod, found = scene.rod(support.rod), quantities.rod(support.rod)
         side = float(np.ptp(outline(rod.section), axis=0).max())
-        size = np.array([1.0, 2.2, 2.2]) * side * np.array([0.25, 1.0, 1.0])
-        plate = pyvista.Cube(center=(0.0, 0.0, 0.0), x_length=size[0], y_length=size[1], z_length=size[2])
-        place = np.eye(4)
-        place[:3, :3] = np.column_stack([outward, axes[1], np.cross(outward, axes[1])])
-        place[:3, 3] = end + shifts[rod.name] + outward * size[0] / 2.0
-        plotter.add_mesh(plate.transform(place, inplace=False), color="#b8c0c8", show_edges=False)
+        if isinstance(support, Clamp):
+            index = 0 if support.end == "start" else -1
+            outward = found.axes[index, 2] * (-1.0 if support.end == "start" else 1.0)
+            place = _moved(found, index, factor) + shifts[rod.name] + 0.125 * side * outward
+            _add_plate(plotter, place, outward, found.axes[index, 1], 0.25 * side, 2.2 * side)
+            continue
+        index = int(np.argmin(np.abs(found.station - support.position)))
+        centre, axes = _moved(found, index, factor) + shifts[rod.name], found.axes[index]
+        moves, turns = held_directions(support, found)
+        for direction in moves.T:
+            along = abs(direction @ axes[2]) > 0.5
+            beneath = direction if direction @ up < 0.0 else -direction
+            if along:
+                beneath = direction if support.position > 0.5 * rod.length else -direction
+            reach = 0.0 if along else float((outline(rod.section) @ axes[:2] @ beneath).max())
+            height = 0.8 * side
+            cone = pyvista.Cone(
+                center=centre + (reach + 0.5 * height) * beneath,
+                direction=-beneath,
+                height=height,
+                radius=0.4 * side,
+                resolution=24,
+            )
+            plotter.add_mesh(cone, color=HOLD)
+        if turns.size:
+            _add_plate(plotter, centre, axes[2], axes[1], 0.12 * side, 1.5 * side)
+
+
+def _moved(found: RodQuantities, index: int, factor: float) -> Array:
+    """A point of the deformed centre line as it is drawn, without its rod's shift."""
+    place: Array = found.position[:, index] + factor * found.displacement[:, index]
+    return place
+
+
+def _add_plate(
+    plotter: pyvista.Plotter, centre: Array, normal: Array, upright: Array, thickness: float, side: float
+) -> None:
+    plate = pyvista.Cube(center=(0.0, 0.0, 0.0), x_length=thickness, y_length=side, z_length=side)
+    place = np.eye(4)
+    place[:3, :3] = np.column_stack([normal, upright, np.cross(normal, upright)])
+    place[:3, 3] = centre
+    plotter.add_mesh(plate.transform(place, inplace=False), color=HOLD, show_edges=False)
+
+
+def _add_joints(
+    plotter: pyvista.Plotter, scene: Scene, quantities: Quantities, factor: float, shifts: dict[str, Array]
+) -> None:
+    """A ball that holds the ends of the rods of a joint."""
+    for joint in scene.joints:
+        sides = [float(np.ptp(outline(scene.rod(end.rod).section), axis=0).max()) for end in joint.ends]
+        end = joint.ends[0]
+        centre = _moved(quantities.rod(end.rod), 0 if end.end == "start" else -1, factor) + shifts[end.rod]
+        plotter.add_mesh(pyvista.Sphere(radius=0.8 * max(sides), center=centre), color=HOLD, smooth_shading=True)
+
+
+def _add_beds(
+    plotter: pyvista.Plotter, scene: Scene, quantities: Quantities, factor: float, shifts: dict[str, Array]
+) -> None:
+    """Springs from the deformed face to where the ground stands still."""
+    for bed in scene.beds:
+        rod, found = scene.rod(bed.rod), quantities.rod(bed.rod)
+        side = float(np.ptp(outline(rod.section), axis=0).max())
+        station = np.linspace(bed.start, bed.end, SPRINGS)
+        normal = face_normals(found, bed.face.face, station)
+        still = between(found, found.position, station) + face_extent(rod, bed.face.face)[0] * normal
+        still = still + shifts[rod.name][:, None]
+        face = still + factor * between(found, found.displacement, station)
+        depth = side + float(np.maximum(0.0, np.einsum("in,in->n", face - still, normal)).max())
+        ground = still + depth * normal
+        tangent = between(found, found.axes[:, 2].T, station)
+        share = np.concatenate([[0.0], np.linspace(0.2, 0.8, 7), [1.0]])
+        swing = 0.15 * side * np.array([0.0, 0.0, 1.0, -1.0, 1.0, -1.0, 1.0, 0.0, 0.0])
+        for place in range(SPRINGS):
+            along = np.outer(1.0 - share, face[:, place]) + np.outer(share, ground[:, place])
+            spring = pyvista.lines_from_points(along + np.outer(swing, tangent[:, place]))
+            plotter.add_mesh(spring, color=INK, line_width=2)
+        plotter.add_mesh(pyvista.lines_from_points(ground.T), color=HOLD, line_width=8)
 
 
 def _add_loads(
     plotter: pyvista.Plotter, scene: Scene, quantities: Quantities, factor: float, shifts: dict[str, Array]
 ) -> None:
-    """Arrows for each load, their tips on the rod's surface; one with two heads along the axis of a moment."""
+    """Arrows for each load, ending or beginning on the rod's surface; one with two heads along the axis of a moment."""
     length = 0.09 * extent(quantities)
     for load in scene.loads:
         rod, found = scene.rod(load.rod), quantities.rod(load.rod)
-        size = float(np.linalg.norm(load_vector(load)))
-        if size == 0.0:
+        arrows = load_arrows(load, found)
+        if len(arrows.station) == 0:
             continue
-        direction = load_vector(load) / size
-        stations = load_stations(load)
-        centres = load_places(load, found) + factor * between(found, found.displacement, stations)
-        tips = []
-        for station, centre in zip(stations, centres.T, strict=True):
+        centres = arrows.place + factor * between(found, found.displacement, arrows.station) + shifts[rod.name][:, None]
+        ends = []
+        for station, centre, direction in zip(arrows.station, centres.T, arrows.direction.T, strict=True):
             axes = found.axes[int(np.argmin(np.abs(found.station - station)))]
-            reach = float((outline(rod.section) @ axes[:2] @ direction).max())
-            tips.append(centre + shifts[rod.name] - reach * direction)
-            for back in (0.0, 0.3)[: 2 if isinstance(load, SectionMoment) else 1]:
+            side = direction if arrows.pulling else -direction
+            surface = centre + float((outline(rod.section) @ axes[:2] @ side).max()) * side
+            ends.append(surface + 1.12 * length * side)
+            start = surface if arrows.pulling else surface - length * direction
+            for back in (0.0, 0.3)[: 2 if arrows.turning else 1]:
                 arrow = pyvista.Arrow(
-                    start=tips[-1] - (1.0 + back) * length * direction,
+                    start=start - back * length * direction,
                     direction=direction,
                     scale=length,
                     shaft_radius=0.035,
@@ -222,7 +313,7 @@ def _add_loads(
                     tip_length=0.32,
                 )
                 plotter.add_mesh(arrow, color=INK)
-        _add_text(plotter, tips[len(tips) // 2] - 1.12 * length * direction, load_text(load))
+        _add_text(plotter, ends[len(ends) // 2], arrows.text)
 
 
 def _add_scale(plotter: pyvista.Plotter, quantities: Quantities, right: Array, up: Array, stout: float) -> None:

@@ -1,4 +1,4 @@
-"""A scene from the side as SVG: rods, clamps, loads, candidate zones and the positions that matter, in mm."""
+"""A scene from the side as SVG: rods, all that holds and loads them, candidate zones and places that matter, in mm."""
 
 from __future__ import annotations
 
@@ -7,17 +7,24 @@ from dataclasses import dataclass
 import numpy as np
 from markupsafe import Markup, escape
 
-from cases.scene import Load, Material, Rod, Scene, SectionMoment
-from reports.geometry import AXES
+from cases.scene import Clamp, Gravity, Load, Material, Rod, RodFace, Scene, Support, station_of
+from reports import sketch_symbols as symbols
+from reports.geometry import AXES, face_extent
 from reports.quantities import Quantities, RodQuantities
 from reports.sections import described, outline
 from reports.solution import Array
-from reports.view import between, load_places, load_text, load_vector, view_plane
+from reports.view import (
+    SPRINGS,
+    between,
+    face_normals,
+    held_directions,
+    load_arrows,
+    view_plane,
+)
 
 MARGIN = 46.0
 # Scenes are drawn this wide, and at most half as high, whatever their size; the text is made for it.
 WIDTH = 500.0
-ARROW = 34.0
 # An arrow whose part in the plane of the drawing is less than this of its length is drawn end on.
 END_ON = 0.3
 
@@ -38,23 +45,35 @@ class _Band:
         return np.hstack([self.centre + self.right * self.normal, (self.centre + self.left * self.normal)[:, ::-1]])
 
 
+@dataclass(frozen=True)
+class _Drawn:
+    """Parts of the drawing, and points that it must have room for, shape (2,) each."""
+
+    parts: list[str]
+    room: list[Array]
+
+    def add(self, parts: list[str], *room: Array) -> None:
+        self.parts.extend(parts)
+        self.room.extend(room)
+
+
 def scene_sketch(scene: Scene, quantities: Quantities) -> Markup:
     """SVG of the scene in the plane of `view_plane`."""
     plane = view_plane(scene, quantities)
     across, upwards = np.ptp(plane @ np.hstack([rod.position for rod in quantities.rods]), axis=1)
     scale = WIDTH / max(float(across), 2.0 * float(upwards))
     bands = {rod.name: _band(rod, quantities.rod(rod.name), scale * plane) for rod in scene.rods}
+    symbols_drawn = [_supports(scene, quantities, bands, scale * plane), _beds(scene, quantities, scale * plane)]
+    symbols_drawn += [_load(load, scene.rod(load.rod), quantities.rod(load.rod), scale * plane) for load in scene.loads]
     points = np.hstack([band.border for band in bands.values()])
     low, high = points.min(axis=1), points.max(axis=1)
-    for load in scene.loads:
-        tails = _tails(load, quantities.rod(load.rod), outline(scene.rod(load.rod).section), scale * plane)
-        low[1] = min(low[1], tails[1].min())
+    low[1] = min([low[1], *(place[1] for drawn in symbols_drawn for place in drawn.room)])
     base = float(-low[1]) + 12.0
     parts = [_bar(rod, bands[rod.name]) for rod in scene.rods]
     parts += _zones(scene, quantities, scale * plane)
-    parts += _clamps(scene, bands)
-    for load in scene.loads:
-        parts += _load(load, scene.rod(load.rod), quantities.rod(load.rod), scale * plane)
+    for drawn in symbols_drawn:
+        parts += drawn.parts
+    parts += _joints(scene, quantities, scale * plane)
     parts += _positions(scene, quantities, plane, scale, base)
     spare = max(0.0, WIDTH - float(high[0] - low[0])) / 2.0  # text keeps its size beside a slim scene
     left, top = low[0] - MARGIN - spare, -high[1] - 48.0
@@ -106,107 +125,130 @@ def _zones(scene: Scene, quantities: Quantities, plane: Array) -> list[str]:
     """A heavy line on the first face along each candidate zone."""
     parts = []
     for pair in scene.contacts:
-        found = quantities.rod(pair.first.rod)
-        axis, side = {"top": (1, 1.0), "bottom": (1, -1.0), "right": (0, 1.0), "left": (0, -1.0)}[pair.first.face]
-        offset = outline(scene.rod(pair.first.rod).section)[:, axis].max() * side * found.axes[0, axis]
-        start, end = (plane @ (between(found, found.position, np.array(pair.zone)) + offset[:, None])).T
-        parts.append(_line("zone", start, end))
+        face, _ = _on_face(scene, quantities, pair.first, np.array(pair.zone), plane)
+        parts.append(symbols.line("zone", *face.T))
     return parts
 
 
-def _clamps(scene: Scene, bands: dict[str, _Band]) -> list[str]:
-    parts = []
-    for clamp in scene.supports:
-        band, index = bands[clamp.rod], 0 if clamp.end == "start" else -1
-        outward = band.tangent[:, index] * (-1.0 if clamp.end == "start" else 1.0)
-        across = 0.9 * (band.left[index] - band.right[index]) * band.normal[:, index]
-        centre = band.centre[:, index]
-        for share in np.linspace(-1.0, 1.0, 7):
-            foot = centre + share * across
-            tip = foot + 6.0 * outward - 4.0 * across / np.linalg.norm(across)
-            parts.append(_line("hatch", foot, tip))
-        parts.append(_line("wall", centre - across, centre + across))
-    return parts
+def _on_face(scene: Scene, quantities: Quantities, face: RodFace, station: Array, plane: Array) -> tuple[Array, Array]:
+    """Points in the middle of a face and the outward normals there, as they are seen, shape (2, n) each."""
+    found = quantities.rod(face.rod)
+    normal = face_normals(found, face.face, station)
+    offset = face_extent(scene.rod(face.rod), face.face)[0] * normal
+    return plane @ (between(found, found.position, station) + offset), plane @ normal / np.linalg.norm(plane[0])
 
 
-def _load(load: Load, rod: Rod, found: RodQuantities, plane: Array) -> list[str]:
-    """Arrows of a load; a turning arrow for a moment; a ringed dot or cross for what points out of or into the page."""
-    vector = load_vector(load)
-    size = float(np.linalg.norm(vector))
-    if size == 0.0:
-        return []
-    vector /= size
-    scale = float(np.linalg.norm(plane[0]))
-    seen = plane @ vector / scale
-    towards = float(np.cross(plane[0], plane[1]) @ vector) / scale**2
-    flat = float(np.linalg.norm(seen))
-    middle = load_places(load, found)
-    parts = []
-    for place in (plane @ middle).T:
-        if isinstance(load, SectionMoment) and abs(towards) > flat:
-            parts += _turning(place, towards > 0.0)
-        elif flat < END_ON:
-            parts += _end_on(place, towards > 0.0)
+def _supports(scene: Scene, quantities: Quantities, bands: dict[str, _Band], plane: Array) -> _Drawn:
+    drawn = _Drawn([], [])
+    for support in scene.supports:
+        band = bands[support.rod]
+        if isinstance(support, Clamp):
+            index = 0 if support.end == "start" else -1
+            outward = band.tangent[:, index] * (-1.0 if support.end == "start" else 1.0)
+            across = 0.9 * (band.left[index] - band.right[index]) * band.normal[:, index]
+            drawn.add(symbols.wall(band.centre[:, index], outward, across))
+            if any(support.displacement) or any(support.rotation):
+                place = band.centre[:, index] + 14.0 * outward - across - [0.0, 12.0]
+                drawn.add([symbols.text("tick", place, "moved")], place - [0.0, 3.0])
         else:
-            direction = seen / flat
-            reach = float(_reach(found, outline(rod.section), plane, place[:, None], direction)[0])
-            tip = place - reach * direction
-            parts += _arrow(tip, direction, double=isinstance(load, SectionMoment))
-    x, y = _tails(load, found, outline(rod.section), plane)[:, len(middle.T) // 2]
-    x, y = (x, y + 6.0) if flat >= END_ON and abs(seen[0]) > abs(seen[1]) else (x + 9.0, y - 8.0)
-    parts.append(f'<text class="load" x="{x:.1f}" y="{-y:.1f}">{load_text(load)}</text>')
-    return parts
+            drawn.add(*_component_support(support, scene.rod(support.rod), quantities.rod(support.rod), band, plane))
+    return drawn
 
 
-def _tails(load: Load, found: RodQuantities, corners: Array, plane: Array) -> Array:
-    """Where the arrows of a load begin; at its places where it is drawn end on; shape (2, n)."""
-    places = plane @ load_places(load, found)
-    seen = plane @ load_vector(load)
-    flat = float(np.linalg.norm(seen))
-    if flat < END_ON * float(np.linalg.norm(load_vector(load)) * np.linalg.norm(plane[0])) or flat == 0.0:
-        return places
-    return places - np.outer(seen / flat, _reach(found, corners, plane, places, seen / flat) + ARROW)
+def _component_support(
+    support: Support, rod: Rod, found: RodQuantities, band: _Band, plane: Array
+) -> tuple[list[str], Array]:
+    """A pin, a roller, or a square where it holds along the view alone; its components in words; where that ends."""
+    index = int(np.argmin(np.abs(found.station - support.position)))
+    scale = float(np.linalg.norm(plane[0]))
+    moves, turns = held_directions(support, found)
+    seen = plane @ moves / scale
+    seen = seen[:, np.linalg.norm(seen, axis=0) > END_ON]
+    upright = bool((np.abs(np.cross(*plane) / scale**2 @ turns) > END_ON).any())
+    centre, tangent, normal = band.centre[:, index], band.tangent[:, index], band.normal[:, index]
+    down = -1.0 if normal[1] > 0.0 or (normal[1] == 0.0 and normal[0] > 0.0) else 1.0
+    outward, apex = down * normal, centre + (band.left[index] if down > 0.0 else band.right[index]) * normal
+    pinned = np.linalg.matrix_rank(seen, tol=END_ON) > 1
+    if seen.shape[1] and not pinned and abs(seen[:, 0] @ tangent) > abs(seen[:, 0] @ normal):
+        at_end = index in (0, len(found.station) - 1)
+        outward = tangent if support.position > 0.5 * rod.length else -tangent
+        apex = centre if at_end else apex
+    kind = "mean " if support.of == "mean" else ""
+    words = kind + ", ".join(support.components) + (" moved" if any(support.displacement) else "")
+    if seen.shape[1]:
+        parts = symbols.support(apex, outward, rollers=not pinned, upright=upright)
+        end = apex + symbols.SUPPORT * outward
+    else:
+        parts, end = [symbols.held_end_on(apex + 4.0 * outward)], apex + 8.0 * outward
+        outward = np.array([0.0, -1.0])
+    sideways = abs(outward[0]) > abs(outward[1])
+    place = end + ([0.0, -17.0] if sideways else (10.0 if outward[1] < 0.0 else 4.0) * outward)
+    return [*parts, symbols.text("tick", place, words)], place - [0.0, 3.0]
 
 
-def _reach(found: RodQuantities, corners: Array, plane: Array, places: Array, direction: Array) -> Array:
-    """How far the rod's sections at some places reach along a direction of the drawing, shape (n,)."""
-    centre = plane @ found.position
-    nearest = np.abs(centre[:, None, :] - places[:, :, None]).sum(axis=0).argmin(axis=1)
-    offsets = np.einsum("xi,nai,ca->xnc", plane, found.axes[nearest][:, :2], corners)
-    reach: Array = np.einsum("xnc,x->nc", offsets, direction).max(axis=1)
-    return reach
+def _beds(scene: Scene, quantities: Quantities, plane: Array) -> _Drawn:
+    """Springs along the face to hatched ground, and the modulus."""
+    drawn = _Drawn([], [])
+    for bed in scene.beds:
+        station = np.linspace(bed.start, bed.end, SPRINGS)
+        face, normal = _on_face(scene, quantities, bed.face, station, plane)
+        flat = np.linalg.norm(normal, axis=0)
+        words = f"{bed.modulus:g} N/mm³"
+        if flat.min() < END_ON:
+            place = face[:, SPRINGS // 2] - [0.0, 14.0]
+            drawn.add([*symbols.bed_end_on(face), symbols.text("tick", place, words)], place)
+        else:
+            outward = normal / flat
+            # A spring off the middle, so that the text does not stand where a load in the middle is drawn.
+            place = (face + symbols.BED * outward)[:, SPRINGS // 4]
+            place = place + (10.0 if outward[1, SPRINGS // 4] < 0.0 else 4.0) * outward[:, SPRINGS // 4]
+            drawn.add([*symbols.bed(face, outward), symbols.text("tick", place, words)], place - [0.0, 3.0])
+    return drawn
 
 
-def _arrow(tip: Array, direction: Array, *, double: bool) -> list[str]:
-    """A straight arrow; with two heads for a moment about its direction."""
-    parts = [_line("force", tip - ARROW * direction, tip - 9.0 * direction)]
-    side = np.array([-direction[1], direction[0]])
-    for point in (tip, tip - 8.0 * direction)[: 2 if double else 1]:
-        head = [point, point - 10.0 * direction + 3.6 * side, point - 10.0 * direction - 3.6 * side]
-        corners = " ".join(f"{x:.2f},{-y:.2f}" for x, y in head)
-        parts.append(f'<polygon class="force-head" points="{corners}"/>')
-    return parts
+def _joints(scene: Scene, quantities: Quantities, plane: Array) -> list[str]:
+    """A dot where rods are joined."""
+    places = [(quantities.rod(joint.ends[0].rod), joint.ends[0].end) for joint in scene.joints]
+    return [symbols.dot(plane @ rod.position[:, 0 if end == "start" else -1], 4.5) for rod, end in places]
 
 
-def _turning(centre: Array, anticlockwise: bool) -> list[str]:
-    """Three quarters of a circle with a head."""
-    sense = 1.0 if anticlockwise else -1.0
-    angle = np.linspace(0.25, 1.6, 25) * np.pi * sense
-    x, y = centre[:, None] + 15.0 * np.array([np.cos(angle), np.sin(angle)])
-    path = " ".join(f"{a:.2f},{-b:.2f}" for a, b in zip(x, y, strict=True))
-    direction = sense * np.array([-np.sin(angle[-1]), np.cos(angle[-1])])
-    head = _arrow(np.array([x[-1], y[-1]]) + 6.0 * direction, direction, double=False)[1:]
-    return [f'<polyline class="force" fill="none" points="{path}"/>', *head]
+def _load(load: Load, rod: Rod, found: RodQuantities, plane: Array) -> _Drawn:
+    """Arrows of a load; a turning arrow for a moment; a ringed dot or cross for what points out of or into the page."""
+    arrows = load_arrows(load, found)
+    drawn = _Drawn([], [])
+    if len(arrows.station) == 0:
+        return drawn
+    scale = float(np.linalg.norm(plane[0]))
+    seen = plane @ arrows.direction / scale
+    flat = np.linalg.norm(seen, axis=0)
+    towards = np.cross(*plane) / scale**2 @ arrows.direction
+    places = plane @ arrows.place
+    ends = places.copy()
+    for index, place in enumerate(places.T):
+        if arrows.turning and abs(towards[index]) > flat[index]:
+            drawn.add(symbols.turning(place, towards[index] > 0.0))
+        elif flat[index] < END_ON:
+            drawn.add(symbols.end_on(place, towards[index] > 0.0))
+        else:
+            direction = seen[:, index] / flat[index]
+            side = direction if arrows.pulling else -direction
+            surface = place + _reach(found, outline(rod.section), plane, arrows.station[index], side) * side
+            far = surface + symbols.ARROW * side
+            tip = far if arrows.pulling else surface
+            drawn.add(symbols.arrow(tip, direction, double=arrows.turning))
+            ends[:, index] = far
+    middle = ends.shape[1] // 2
+    x, y = ends[:, middle]
+    level = flat[middle] >= END_ON and abs(seen[0, middle]) > abs(seen[1, middle])
+    words = np.array([x, y + 6.0] if level else [x + 9.0, y if arrows.pulling else y - 8.0])
+    drawn.add([symbols.text("load", words, arrows.text)], *ends.T)
+    return drawn
 
 
-def _end_on(centre: Array, towards: bool) -> list[str]:
-    """A ring with a dot (out of the page) or a cross (into it)."""
-    x, y = centre
-    ring = f'<circle class="force" fill="none" cx="{x:.2f}" cy="{-y:.2f}" r="6"/>'
-    if towards:
-        return [ring, f'<circle class="force-head" cx="{x:.2f}" cy="{-y:.2f}" r="2"/>']
-    arm = 6.0 / np.sqrt(2.0) * np.array([[1.0, 1.0], [1.0, -1.0]])
-    return [ring, *(_line("force", centre - each, centre + each) for each in arm)]
+def _reach(found: RodQuantities, corners: Array, plane: Array, station: float, side: Array) -> float:
+    """How far the rod's section at a station reaches along a direction of the drawing."""
+    axes = found.axes[int(np.argmin(np.abs(found.station - station)))]
+    return float(np.max(side @ plane @ axes[:2].T @ corners.T))
 
 
 def _positions(scene: Scene, quantities: Quantities, plane: Array, scale: float, base: float) -> list[str]:
@@ -215,7 +257,15 @@ def _positions(scene: Scene, quantities: Quantities, plane: Array, scale: float,
     if abs(plane[0, axis]) < 1.0 - 1e-9:
         return []
     places = [rod.position[:, end] for rod in quantities.rods for end in (0, -1)]
-    places += [place for load in scene.loads for place in load_places(load, quantities.rod(load.rod)).T[[0, -1]]]
+    for load in scene.loads:
+        if not isinstance(load, Gravity):
+            marked = load_arrows(load, quantities.rod(load.rod)).place
+            places += [*marked[:, :1].T, *marked[:, -1:].T]
+    held = [(support.rod, station_of(support, scene.rod(support.rod))) for support in scene.supports]
+    held += [(bed.rod, station) for bed in scene.beds for station in (bed.start, bed.end)]
+    for name, station in held:
+        found = quantities.rod(name)
+        places += list(between(found, found.position, np.array([station])).T)
     for pair in scene.contacts:
         found = quantities.rod(pair.first.rod)
         places += list(between(found, found.position, np.array(pair.zone)).T)
@@ -227,8 +277,3 @@ def _positions(scene: Scene, quantities: Quantities, plane: Array, scale: float,
         parts.append(f'<text class="tick" x="{x}" y="{base + 14:.1f}">{label:g}</text>')
     parts.append(f'<text class="tick" x="{last + 28:.1f}" y="{base + 3:.1f}">{AXES[axis]}, mm</text>')
     return parts
-
-
-def _line(kind: str, start: Array, end: Array) -> str:
-    (x1, y1), (x2, y2) = start, end
-    return f'<line class="{kind}" x1="{x1:.2f}" y1="{-y1:.2f}" x2="{x2:.2f}" y2="{-y2:.2f}"/>'

@@ -1,17 +1,54 @@
-"""From where a scene is looked at, and places of its loads, for sketch and picture alike."""
+"""From where a scene is looked at, and where its loads and supports are drawn, for sketch and picture alike."""
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
-from cases.scene import LineLoad, Load, Scene, SectionMoment
+from cases.scene import (
+    Face,
+    Gravity,
+    LineLoad,
+    Load,
+    Pressure,
+    Scene,
+    SectionForce,
+    SectionMoment,
+    Support,
+)
 from reports.quantities import Quantities, RodQuantities
 from reports.solution import Array
 
 # A load's arrow counts with this part of the scene's extent where the view is chosen.
 _ARROW = 0.1
-# Arrows of a line load.
+# Arrows of a line load or a pressure, and springs of a bed.
 ARROWS = 7
+SPRINGS = 13
+# The section's axis normal to each face, and the side of it on which the face lies.
+_NORMALS: dict[Face, tuple[int, float]] = {"top": (1, 1.0), "bottom": (1, -1.0), "right": (0, 1.0), "left": (0, -1.0)}
+
+
+@dataclass(frozen=True)
+class LoadArrows:
+    """Arrows that stand for a load; none for a load of nothing.
+
+    Attributes
+    ----------
+    station : arc length, mm, shape (n,)
+    place : on the undeformed centre line, global, mm, shape (3, n)
+    direction : global unit vectors, shape (3, n)
+    turning : whether they are axes of a moment
+    pulling : whether they begin at the rod's surface instead of ending there
+    text : magnitude with unit
+    """
+
+    station: Array
+    place: Array
+    direction: Array
+    turning: bool
+    pulling: bool
+    text: str
 
 
 def extent(quantities: Quantities) -> float:
@@ -29,34 +66,52 @@ def view_plane(scene: Scene, quantities: Quantities) -> Array:
     first, second, tangent = quantities.rods[0].axes[0]
     points = [rod.position for rod in quantities.rods]
     for load in scene.loads:
-        size = float(np.linalg.norm(load_vector(load)))
-        if size > 0.0:
-            places = load_places(load, quantities.rod(load.rod))
-            points.append(places - _ARROW * extent(quantities) * load_vector(load)[:, None] / size)
+        arrows = load_arrows(load, quantities.rod(load.rod))
+        points.append(arrows.place - _ARROW * extent(quantities) * arrows.direction)
     planes = [np.array(pair) for pair in ((tangent, second), (tangent, first), (first, second))]
     areas = [float(np.prod(np.ptp(plane @ np.hstack(points), axis=1))) for plane in planes]
     return planes[int(np.argmax(np.array(areas) > 0.999 * max(areas)))]
 
 
-def load_vector(load: Load) -> Array:
-    """Force (N), force per length (N/mm) or moment (N mm) of a load, global components, shape (3,)."""
-    return np.array(load.moment if isinstance(load, SectionMoment) else load.force, dtype=float)
+def load_arrows(load: Load, rod: RodQuantities) -> LoadArrows:
+    """How a load is drawn: at its section, evenly over its stretch, or in the middle of the rod that has weight."""
+    match load:
+        case SectionForce():
+            station, vector, unit = np.array([load.position]), load.force, "N"
+        case SectionMoment():
+            station, vector, unit = np.array([load.position]), load.moment, "N mm"
+        case LineLoad():
+            station, vector, unit = np.linspace(load.start, load.end, ARROWS), load.force, "N/mm"
+        case Gravity():
+            station, vector, unit = np.array([0.5 * rod.station[-1]]), load.acceleration, ""
+        case Pressure():
+            station = np.linspace(load.start, load.end, ARROWS if load.pressure else 0)
+            direction = -np.sign(load.pressure) * face_normals(rod, load.face.face, station)
+            place = between(rod, rod.position, station)
+            return LoadArrows(station, place, direction, False, load.pressure < 0.0, f"{load.pressure:g} MPa")
+    size = float(np.linalg.norm(vector))
+    if size == 0.0:
+        station = station[:0]
+    direction = np.tile(np.array(vector, dtype=float)[:, None] / (size or 1.0), len(station))
+    text = "g" if isinstance(load, Gravity) else f"{size:g} {unit}"
+    place = between(rod, rod.position, station)
+    return LoadArrows(station, place, direction, isinstance(load, SectionMoment), isinstance(load, Gravity), text)
 
 
-def load_text(load: Load) -> str:
-    """Magnitude of a load with its unit."""
-    unit = "N mm" if isinstance(load, SectionMoment) else "N/mm" if isinstance(load, LineLoad) else "N"
-    return f"{np.linalg.norm(load_vector(load)):g} {unit}"
+def face_normals(rod: RodQuantities, face: Face, station: Array) -> Array:
+    """Outward normals in the middle of a face, global, shape (3, n)."""
+    axis, side = _NORMALS[face]
+    normals = side * between(rod, rod.axes[:, axis].T, station)
+    return np.asarray(normals / np.linalg.norm(normals, axis=0))
 
 
-def load_stations(load: Load) -> Array:
-    """Where a load is drawn, arc length, mm, shape (n,)."""
-    return np.linspace(load.start, load.end, ARROWS) if isinstance(load, LineLoad) else np.array([load.position])
-
-
-def load_places(load: Load, rod: RodQuantities) -> Array:
-    """Where a load is drawn, on the undeformed centre line, mm, shape (3, n)."""
-    return between(rod, rod.position, load_stations(load))
+def held_directions(support: Support, rod: RodQuantities) -> tuple[Array, Array]:
+    """Directions in which and about which a support holds its section, global, shapes (3, n) and (3, m)."""
+    axes = rod.axes[int(np.argmin(np.abs(rod.station - support.position)))]
+    moves = [axes["xys".index(component)] for component in support.components if len(component) == 1]
+    turns = [axes["xys".index(component[-1])] for component in support.components if len(component) > 1]
+    nothing = np.zeros((0, 3))
+    return np.vstack([nothing, *moves]).T, np.vstack([nothing, *turns]).T
 
 
 def between(rod: RodQuantities, values: Array, station: Array) -> Array:
