@@ -1,4 +1,4 @@
-"""The command `rodcheck`: list, solve, compare, report, verify and schema.
+"""The command `rodcheck`: list, solve, compare, report, verify, performance and schema.
 
 Heavy imports wait until a command needs them. Bad input is answered by one sentence on standard error and
 exit code 2; a verdict other than 'pass', a solver that did not converge or a case that failed by exit code 1. The
@@ -157,7 +157,7 @@ def compare(*cases: str) -> int:
 def report(*cases: str, output: Path = Path("report")) -> int:
     """Solve cases both ways and write one self-contained page, with the results as JSON beside it.
 
-    With the whole library comes the verification page.
+    With the whole library come the verification page and the performance page.
 
     Parameters
     ----------
@@ -174,8 +174,10 @@ def report(*cases: str, output: Path = Path("report")) -> int:
     runs = _run_all(loaded)
     outcomes = None if cases else _verification_outcomes()
     verification = None if outcomes is None else _write_verification(outcomes, output)
-    print(_written(lambda: write_report(runs, output, None if verification is None else verification.name)))
-    incomplete = any(isinstance(run, Failure) for run in runs) or (not cases and outcomes is None)
+    performance = None if cases else _write_performance(output)
+    pages = [page.name for page in (verification, performance) if page is not None]
+    print(_written(lambda: write_report(runs, output, pages)))
+    incomplete = any(isinstance(run, Failure) for run in runs) or (not cases and len(pages) < 2)
     return NOT_PASSED if incomplete else 0
 
 
@@ -198,6 +200,22 @@ def verify(*, output: Path = Path("report")) -> int:
     print_verification(GROUPS, outcomes)
     print(page)
     return 0 if all(outcome.verdict == "pass" for outcome in outcomes.values()) else NOT_PASSED
+
+
+@app.command
+def performance(*, output: Path = Path("report")) -> int:
+    """Measure what the rod model costs; print and write what was found.
+
+    Parameters
+    ----------
+    output : folder for performance.html
+    """
+    _require_folder(output)
+    page = _write_performance(output, aloud=True)
+    if page is None:
+        return NOT_PASSED
+    print(page)
+    return 0
 
 
 @schema_app.command(name="result")
@@ -249,6 +267,27 @@ def _write_verification(outcomes: Mapping[str, Outcome], output: Path) -> Path:
     from reports.verification.registry import GROUPS
 
     return _written(lambda: write_verification(GROUPS, outcomes, output))
+
+
+def _write_performance(output: Path, *, aloud: bool = False) -> Path | None:
+    """The performance page, measured and written; None, with the reason on standard error, if it cannot be measured.
+
+    aloud : whether to print what was found
+    """
+    from reports.performance.measure import measure
+    from reports.performance.page import write_performance
+    from reports.performance.wording import summary
+    from reports.processes import ProcessFailed
+
+    try:
+        found = measure()
+    except ProcessFailed as error:
+        print(f"rodcheck: performance: {error}", file=sys.stderr)
+        return None
+    page = _written(lambda: write_performance(found, output))
+    if aloud:
+        print("\n".join(summary(found.series, found.breakdown, found.study)))
+    return page
 
 
 def _load_all(names: Sequence[str]) -> list[Case]:

@@ -37,6 +37,17 @@ MOMENT_CAPTION = (
     "Above: from equilibrium of loads and contact forces. Below: how far the moment of the computed stress is from "
     "it, a check of each model on itself; it is largest at clamps, whose corners are singular."
 )
+# Pages that may stand beside the report, by file name: what they are called and what they say.
+PAGES = {
+    "verification.html": (
+        "Verification",
+        "the rod model against closed forms, published benchmarks and 3D, level by level.",
+    ),
+    "performance.html": (
+        "Performance",
+        "what the rod model costs, against the number of elements, part by part, and by level and order.",
+    ),
+}
 
 
 @dataclass(frozen=True)
@@ -50,19 +61,19 @@ class DrawnPicture:
     problem: str
 
 
-def write_report(runs: Sequence[CaseRun | Failure], output: Path, verification: str | None = None) -> Path:
+def write_report(runs: Sequence[CaseRun | Failure], output: Path, pages: Sequence[str] = ()) -> Path:
     """Write `index.html` and `results/*.json` into the folder `output`; returns the page's path.
 
     Parameters
     ----------
-    verification : file name of the verification page beside it, where there is one
+    pages : file names of the pages beside it, those of `PAGES` that there are
 
     Raises
     ------
     OSError
         if the folder or a file cannot be written.
     """
-    page = render(runs, pictures(runs), verification)
+    page = render(runs, pictures(runs), pages)
     for run in runs:
         if isinstance(run, CaseRun):
             _write_results(run, output / "results")
@@ -70,10 +81,8 @@ def write_report(runs: Sequence[CaseRun | Failure], output: Path, verification: 
     return output / "index.html"
 
 
-def render(
-    runs: Sequence[CaseRun | Failure], drawn: Mapping[str, DrawnPicture], verification: str | None = None
-) -> str:
-    """The page as HTML, with a link to the verification page where there is one."""
+def render(runs: Sequence[CaseRun | Failure], drawn: Mapping[str, DrawnPicture], pages: Sequence[str] = ()) -> str:
+    """The page as HTML, with links to the pages beside it."""
     cases, figures = [], {}
     for index, run in enumerate(runs, start=1):
         anchor = f"case-{index}"
@@ -89,7 +98,7 @@ def render(
         cases=cases,
         definitions=DEFINITIONS.values(),
         repeats=ROD_REPEATS,
-        verification=verification,
+        pages=[(page, *PAGES[page]) for page in pages],
     )
 
 

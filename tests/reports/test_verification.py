@@ -273,6 +273,7 @@ def test_the_report_of_the_whole_library_links_to_the_verification_page(
 ) -> None:
     monkeypatch.setattr("reports.progress.run_cases", lambda _cases, _progress: iter([case_run]))
     monkeypatch.setattr("reports.site.in_own_process", lambda *_: (_ for _ in ()).throw(ProcessFailed("not drawn")))
+    monkeypatch.setattr(command_line, "_write_performance", lambda _output: tmp_path / "performance.html")
     answered(outcomes)
 
     assert command_line.run(["report", "--output", str(tmp_path)]) == 0

@@ -1,0 +1,83 @@
+"""All measurements of the performance page, each in a process of its own, and where they were made."""
+
+from __future__ import annotations
+
+import os
+import platform
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import scipy
+from rich.console import Console
+from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeElapsedColumn
+from rich.progress import Progress as Bars
+
+from reports.performance import levels, parts, scaling
+from reports.performance.levels import LevelStudy, measured_levels
+from reports.performance.parts import Breakdown, measured_parts
+from reports.performance.scaling import Series, empty_process, measured_size
+from reports.processes import in_own_process
+
+
+@dataclass(frozen=True)
+class Performance:
+    """What the rod model costs.
+
+    Attributes
+    ----------
+    series : cost against the number of elements, with elements of one length and of lengths that all differ
+    machine : what it was measured on, in words
+    """
+
+    series: tuple[Series, ...]
+    breakdown: Breakdown
+    study: LevelStudy
+    machine: str
+
+
+def measure() -> Performance:
+    """Carry out all measurements behind a progress bar.
+
+    Raises
+    ------
+    ProcessFailed
+        if a measurement raises or its process ends early.
+    """
+    console = Console(stderr=True)
+    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
+    with Bars(*columns, console=console, transient=True, disable=not console.is_terminal) as bars:
+        task = bars.add_task("", total=len(scaling.SIZES) + len(scaling.UNEQUAL_SIZES) + 3)
+
+        def begun(what: str) -> None:
+            bars.update(task, description=f"performance: {what}")
+            bars.advance(task)
+
+        begun("an empty process")
+        empty = in_own_process(empty_process, None)
+        series = (
+            measured_series(True, scaling.SIZES, empty, begun),
+            measured_series(False, scaling.UNEQUAL_SIZES, empty, begun),
+        )
+        begun("parts of a solve")
+        breakdown = in_own_process(measured_parts, parts.REPEATS)
+        begun("levels and orders")
+        study = in_own_process(measured_levels, (levels.LEVELS, levels.ORDERS, levels.REPEATS))
+    return Performance(series, breakdown, study, machine())
+
+
+def measured_series(equal: bool, sizes: Sequence[int], empty: float, begun: Callable[[str], None]) -> Series:
+    """Each number of elements in a process of its own; `begun` is told which begins."""
+    found = []
+    for elements in sizes:
+        begun(f"{elements} elements{'' if equal else ' of unequal length'}")
+        found.append(in_own_process(measured_size, (elements, equal)))
+    return Series(equal, tuple(found), empty)
+
+
+def machine() -> str:
+    """Versions, processor type and threads."""
+    threads = os.environ.get("OPENBLAS_NUM_THREADS") or os.environ.get("OMP_NUM_THREADS")
+    used = {None: "as many threads as BLAS takes", "1": "one thread"}.get(threads, f"{threads} threads")
+    versions = f"Python {platform.python_version()}, NumPy {np.__version__}, SciPy {scipy.__version__}"
+    return f"{versions}; {platform.system()} on {platform.machine()}, {os.cpu_count()} processors, {used}"

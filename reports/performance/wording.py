@@ -1,0 +1,201 @@
+"""What the measurements show, in sentences made from them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from reports.comparison import Verdict
+from reports.performance.levels import LevelStudy, Setting
+from reports.performance.parts import Breakdown
+from reports.performance.scaling import Series, apart
+from reports.performance.timing import Timing
+
+# Slopes aimed at: 1 within 10 %; and memory of the process that solves the largest rod, MB.
+SLOPE_TOLERANCE = 0.1
+MOST_MEMORY = 2048.0
+# A contact force this near that of the finest setting is near enough for the sentence under the figure.
+NEAR = 1e-3
+
+
+@dataclass(frozen=True)
+class Aim:
+    """Something aimed at and what was found; of slopes also that over all sizes, at which nothing is aimed."""
+
+    what: str
+    aim: str
+    found: str
+    over_all: str
+    verdict: Verdict
+
+
+def count(number: int) -> str:
+    """A number of things with its thousands apart."""
+    return f"{number:,}".replace(",", "\u202f")
+
+
+def duration(seconds: float) -> str:
+    """Seconds in the unit that suits them, two digits: more would be noise."""
+    for unit, scale in (("s", 1.0), ("ms", 1e3)):
+        if abs(seconds) * scale >= 1.0:
+            return f"{_digits(seconds * scale, 2)} {unit}"
+    return f"{_digits(seconds * 1e6, 2)} µs"
+
+
+def megabytes(size: float) -> str:
+    """Memory in MB without the unit, three digits."""
+    return f"{size:#.3g}".rstrip(".") if size < 1000.0 else f"{size:.0f}"
+
+
+def milliseconds(seconds: float) -> str:
+    """Milliseconds without the unit: two decimals below 10, one below 100."""
+    decimals = 2 if abs(seconds) < 0.01 else 1 if abs(seconds) < 0.1 else 0
+    return f"{1e3 * seconds:.{decimals}f}".replace("-", "\u2212")
+
+
+def spread(timing: Timing) -> str:
+    """Quartiles in ms."""
+    lower, upper = timing.quartiles
+    return f"{milliseconds(lower)} to {milliseconds(upper)}"
+
+
+def percent(part: float) -> str:
+    """A share, or an error with its sign, in per cent."""
+    if part == 0.0:
+        return "0"
+    text = f"{100.0 * part:.2g}" if 1e-5 <= abs(part) < 0.1 else f"{100.0 * part:.0f}"
+    if abs(part) < 1e-5:
+        text = f"{100.0 * part:.0e}"
+    return f"{text} %".replace("-", "\u2212")
+
+
+def _digits(value: float, digits: int) -> str:
+    return f"{float(f'{value:.{digits}g}'):g}"
+
+
+def kind(series: Series) -> str:
+    """What kind of elements it is about."""
+    return "equal lengths" if series.equal else "unequal lengths"
+
+
+def _kinds(values: list[tuple[Series, str]]) -> str:
+    """A value for each kind of elements in a phrase."""
+    return " and ".join(f"{value} with {kind(series)}" for series, value in values)
+
+
+def aims(series: tuple[Series, ...]) -> list[Aim]:
+    """What was aimed at of the cost against the number of elements, and what came of it."""
+    found = []
+    for what, unit in (("seconds", "seconds"), ("memory", "allocated")):
+        for one in series:
+            costs = getattr(one, unit)
+            slope, of_all = one.fit(costs).slope, one.fit_of_all(costs).slope
+            verdict: Verdict = "pass" if abs(slope - 1.0) <= SLOPE_TOLERANCE else "fail"
+            aim = f"{1.0 - SLOPE_TOLERANCE:g} to {1.0 + SLOPE_TOLERANCE:g}"
+            found.append(Aim(f"Slope of {what}, {kind(one)}", aim, f"{slope:.2f}", f"{of_all:.2f}", verdict))
+    for one in series:
+        largest = one.sizes[-1]
+        met: Verdict = "pass" if largest.resident <= MOST_MEMORY and largest.outcome == "converged" else "fail"
+        what = f"Memory of a process with {count(largest.elements)} elements, {kind(one)}"
+        found.append(Aim(what, "within 2 GB", f"{megabytes(largest.resident)} MB", "", met))
+    return found
+
+
+def seconds_caption(series: tuple[Series, ...]) -> str:
+    """What the figure of seconds shows."""
+    largest = series[0].sizes[-1]
+    slopes = _kinds([(one, f"{one.fit(one.seconds).slope:.2f}") for one in series])
+    of_all = _kinds([(one, f"{one.fit_of_all(one.seconds).slope:.2f}") for one in series])
+    return (
+        f"Aim: slope 1 within {percent(SLOPE_TOLERANCE)}; found {slopes} from {series[0].fitted_from} elements on, and "
+        f"{of_all} over all sizes, where what a solve costs whatever its size weighs: "
+        f"{duration(series[0].sizes[0].timing.median)} for {series[0].sizes[0].elements} elements, "
+        f"{duration(largest.timing.median)} for {count(largest.elements)}."
+    )
+
+
+def memory_caption(series: tuple[Series, ...]) -> str:
+    """What the figure of memory shows."""
+    slopes = _kinds([(one, f"{one.fit(one.allocated).slope:.2f}") for one in series])
+    grown = _kinds([(one, f"{megabytes(one.growth[-1])} MB") for one in series])
+    return (
+        f"Aim: slope 1 within {percent(SLOPE_TOLERANCE)}; found {slopes} from {series[0].fitted_from} elements on; "
+        f"{count(series[0].sizes[-1].elements)} elements make the process grow by {grown}, above the "
+        f"{megabytes(series[0].empty)} MB of one that solved a single element."
+    )
+
+
+def relative_caption(series: tuple[Series, ...]) -> str:
+    """What the figure of the cost relative to linear shows."""
+    times, memories = ([(one, one.relative(getattr(one, unit))) for one in series] for unit in ("seconds", "allocated"))
+    from_on = [
+        float(value)
+        for one, ratios in times + memories
+        for size, value in zip(one.sizes, ratios, strict=True)
+        if size.elements >= one.fitted_from
+    ]
+    small = " or ".join(f"{ratios[0]:.2g}" for _, ratios in times)
+    return (
+        f"Were cost proportional to the number of elements, all points would be at 1: from {series[0].fitted_from} "
+        f"elements on they lie between {min(from_on):.2f} and {max(from_on):.2f}, and at {series[0].sizes[0].elements} "
+        f"elements an element takes {small} times as long as in the largest rod."
+    )
+
+
+def sizes_note(series: tuple[Series, ...]) -> str:
+    """How sure the numbers are, and whether the answers agree."""
+    runs = [size.timing.runs for one in series for size in one.sizes]
+    failed = [size for one in series for size in one.sizes if size.outcome != "converged"]
+    agree = (
+        f"The end's deflection is the same to {percent(apart(series))} in all rods of {series[0].fitted_from} elements "
+        "and more."
+    )
+    outcome = f" {len(failed)} of the solves did not converge." if failed else ""
+    return f"Seconds are medians of {min(runs)} to {max(runs)} runs, with their quartiles. {agree}{outcome}"
+
+
+def parts_note(breakdown: Breakdown) -> str:
+    """Where the time goes, in a sentence or two."""
+    inside = sorted(breakdown.inside.items(), key=lambda item: -item[1].median)
+    whole = breakdown.whole.median
+    (first, most), (second, next_most) = inside[:2]
+    return (
+        f"{first} takes {percent(most.median / whole)} of a solve and {second.lower()} "
+        f"{percent(next_most.median / whole)}; in all it takes {breakdown.contact_solutions} contact "
+        f"solutions. Medians and quartiles of {breakdown.whole.runs} runs, with tables of quadrature and basis "
+        f"functions at hand; the first solve in a new process took {duration(breakdown.first)}."
+    )
+
+
+def levels_caption(study: LevelStudy) -> str:
+    """What the figure of error against seconds shows."""
+    near = [
+        setting
+        for setting in study.settings
+        if setting is not study.finest and abs(study.error(setting)) <= NEAR and setting.outcome == "converged"
+    ]
+    finest = study.finest
+    against = f"of h{finest.level}, p = {finest.order}, which takes {duration(finest.timing.median)}"
+    if not near:
+        return f"No other setting comes within {percent(NEAR)} of the contact force {against}."
+    cheapest: Setting = min(near, key=lambda setting: setting.timing.median)
+    return (
+        f"The cheapest setting within {percent(NEAR)} of the contact force {against}, is h{cheapest.level}, "
+        f"p = {cheapest.order}: {percent(study.error(cheapest))} in {duration(cheapest.timing.median)}."
+    )
+
+
+def levels_note(study: LevelStudy) -> str:
+    """What the cells of the table of levels and orders hold."""
+    runs = study.settings[0].timing.runs
+    return (
+        f"Each cell: milliseconds of a solve (median of {runs}) and, below, the difference of the contact force from "
+        f"that of h{study.finest.level}, p = {study.finest.order}, {study.finest.force:.3f} N. All on the elements of "
+        "the case file: what those leave out, all settings share."
+    )
+
+
+def summary(series: tuple[Series, ...], breakdown: Breakdown, study: LevelStudy) -> list[str]:
+    """What `rodcheck performance` prints."""
+    found = [f"{aim.what}: {aim.found} (aim {aim.aim}), {aim.verdict}" for aim in aims(series)]
+    whole = f"{breakdown.case}, h{breakdown.level}, p = {breakdown.order}: {duration(breakdown.whole.median)}."
+    return [*found, f"{whole} {parts_note(breakdown)}", levels_caption(study)]
