@@ -2,6 +2,7 @@
 
 import copy
 import tomllib
+from pathlib import Path
 
 import jsonschema
 import pytest
@@ -82,9 +83,12 @@ ONE_OF_EACH = {
 }
 
 
-def changed(*place, value):
-    """`ONE_OF_EACH` with another value at a place."""
-    content = copy.deepcopy(ONE_OF_EACH)
+EVERYTHING = tomllib.loads(Path(__file__).with_name("everything.toml").read_text(encoding="utf-8"))
+
+
+def changed(*place, value, content=ONE_OF_EACH):
+    """`ONE_OF_EACH`, or another case, with another value at a place."""
+    content = copy.deepcopy(content)
     table = content
     for key in place[:-1]:
         table = table[key]
@@ -98,9 +102,34 @@ def test_every_shape_and_load_fits_the_schema():
     assert case_from("each", checked_form(ONE_OF_EACH), TRUTH).scene.rods[1].centre_line.twist == 1.5
 
 
+def test_the_case_that_uses_everything_fits_the_schema():
+    jsonschema.Draft202012Validator(case_schema()).validate(EVERYTHING)
+
+
+def elsewhere(*place, value):
+    return changed(*place, value=value, content=EVERYTHING)
+
+
 @pytest.mark.parametrize(
     "wrong",
     [
+        pytest.param(elsewhere("materials", "steel", "density", value=7850), id="bare density"),
+        pytest.param(elsewhere("materials", "rubber", "law", value="orthotropic"), id="keys of another law"),
+        pytest.param(elsewhere("materials", "spruce", "young_moduli", value=[1, 2]), id="two moduli"),
+        pytest.param(elsewhere("supports", 2, "components", value=["turn x"]), id="turn of a whole section"),
+        pytest.param(elsewhere("supports", 4, "components", value=[]), id="no component"),
+        pytest.param(elsewhere("supports", 4, "kind", value="clamp"), id="keys of another support"),
+        pytest.param(elsewhere("supports", 1, "rotation", value=[0, 0]), id="rotation with two components"),
+        pytest.param(elsewhere("joints", 0, "ends", value=[{"rod": "post", "end": "end"}]), id="joint of one end"),
+        pytest.param(elsewhere("beds", 0, "face", "face", value="below"), id="unknown face"),
+        pytest.param(elsewhere("loads", 0, "rods", value=[]), id="weight of no rod"),
+        pytest.param(elsewhere("loads", 0, "acceleration", value=[0, -9.81, 0]), id="bare acceleration"),
+        pytest.param(
+            elsewhere("rods", "snake", "centre_line", "points", value=[[0, 0, 0], [1, 0, 0]]), id="two points"
+        ),
+        pytest.param(elsewhere("rods", "hook", "centre_line", "pieces", value=[]), id="path of nothing"),
+        pytest.param(elsewhere("rod_model", "levels", "beam", value=[5, 4, 13]), id="level too high"),
+        pytest.param(elsewhere("rod_model", "orders", "beam", value=1), id="order too low"),
         pytest.param(changed("sections", "wire", "shape", value="circel"), id="unknown shape"),
         pytest.param(changed("sections", "wire", "shape", value="ring"), id="keys of another shape"),
         pytest.param(changed("sections", "angle", "outer", value=[[0, 0, 0]]), id="corner with three coordinates"),
@@ -109,7 +138,7 @@ def test_every_shape_and_load_fits_the_schema():
         pytest.param(changed("loads", 1, "force", value=[0, 1]), id="force with two components"),
     ],
 )
-def test_schema_and_loader_refuse_the_same_shapes_and_loads(wrong):
+def test_schema_and_loader_refuse_the_same_files(wrong):
     with pytest.raises(jsonschema.ValidationError):
         jsonschema.Draft202012Validator(case_schema()).validate(wrong)
     with pytest.raises(FormError):
