@@ -12,7 +12,7 @@ from pathlib import Path
 import jsonschema
 import pytest
 
-from cases.loader import library_names
+from cases.loader import LIBRARY, library_names
 from reports import command_line
 from reports.runner import CaseRun, Failure
 
@@ -101,6 +101,36 @@ def test_solve_json_prints_exactly_one_object_that_the_schema_describes(
     jsonschema.validate(printed, schema)
     assert (printed["case"], printed["model"], printed["level"], printed["order"]) == (CASE, "rod", 2, 3)
     assert printed["converged"] is True
+
+
+@pytest.fixture
+def graded(tmp_path: Path) -> str:
+    """Path of a case whose levels and orders differ element by element."""
+    case = (LIBRARY / f"{CASE}.toml").read_text(encoding="utf-8")
+    case = case.replace("level = 5", "level = 2").replace("order = 6", "order = 3")
+    path = tmp_path / "graded.toml"
+    path.write_text(case + "\n[rod_model.levels]\nlower = [3, 2, 1, 1, 1, 1]\n[rod_model.orders]\nupper = 4\n")
+    return str(path)
+
+
+def test_solve_takes_levels_and_orders_of_elements_from_the_case(
+    graded: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert command_line.run(["schema", "result"]) == 0
+    schema = json.loads(capsys.readouterr().out)
+
+    assert command_line.run(["solve", graded, "--json"]) == 0
+
+    printed = json.loads(capsys.readouterr().out)
+    jsonschema.validate(printed, schema)
+    assert printed["level"] == {"lower": [3, 2, 1, 1, 1, 1], "upper": [2] * 6}
+    assert printed["order"] == {"lower": [3] * 6, "upper": [4] * 6}
+
+
+def test_level_and_order_that_are_given_hold_for_all_elements(graded: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert command_line.run(["solve", graded, "--level", "2", "--order", "3"]) == 0
+
+    assert "h2, p = 3" in capsys.readouterr().out
 
 
 def test_solve_for_people_names_units(capsys: pytest.CaptureFixture[str]) -> None:
