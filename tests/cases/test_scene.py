@@ -7,23 +7,30 @@ import numpy as np
 import pytest
 
 from cases.scene import (
+    Bed,
     Box,
     Circle,
     Clamp,
     ContactPair,
+    Gravity,
     Helix,
+    Joint,
     Line,
     LineLoad,
     Material,
+    Orthotropic,
     Polygon,
+    Pressure,
     Rectangle,
     Ring,
     Rod,
+    RodEnd,
     RodFace,
     Scene,
     SceneError,
     SectionForce,
     SectionMoment,
+    Support,
 )
 
 STEEL = Material(200000.0, 0.3)
@@ -40,8 +47,8 @@ UPPER = rod("upper", (200.0, 15.5, 0.0), (500.0, 15.5, 0.0))
 OVERLAP = ContactPair("overlap", RodFace("lower", "top"), RodFace("upper", "bottom"), (200.0, 300.0), 0.5, 1e6)
 
 
-def scene(rods=(LOWER, UPPER), supports=(), loads=(), contacts=(OVERLAP,)):
-    return Scene("test", rods, supports, loads, contacts)
+def scene(rods=(LOWER, UPPER), supports=(), loads=(), contacts=(OVERLAP,), joints=(), beds=()):
+    return Scene("test", rods, supports, loads, contacts, joints, beds)
 
 
 def refusal(make, *arguments, **keywords):
@@ -154,6 +161,19 @@ def test_contact_pairs_that_make_no_sense_are_refused(change, key):
         ({"loads": (LineLoad("upper", 200.0, 100.0, (0.0, 1.0, 0.0)),)}, "loads #1.start"),
         ({"loads": (LineLoad("upper", 200.0, 300.1, (0.0, 1.0, 0.0)),)}, "loads #1.start"),
         ({"loads": (LineLoad("upper", 0.0, 1.0, (0.0, float("nan"), 0.0)),)}, "loads #1.force"),
+        ({"loads": (Pressure(RodFace("nobody", "top"), 0.0, 1.0, 1.0),)}, "loads #1.face.rod"),
+        ({"loads": (Pressure(RodFace("upper", "under"), 0.0, 1.0, 1.0),)}, "loads #1.face.face"),
+        ({"loads": (Pressure(RodFace("upper", "top"), 0.0, 300.1, 1.0),)}, "loads #1.start"),
+        ({"loads": (Pressure(RodFace("upper", "top"), 0.0, 300.0, float("inf")),)}, "loads #1.pressure"),
+        ({"loads": (Gravity("nobody", (0.0, -9810.0, 0.0)),)}, "loads #1.rod"),
+        ({"supports": (Clamp("lower", "start", (0.0, float("nan"), 0.0)),)}, "supports #1.displacement"),
+        ({"supports": (Clamp("lower", "start", rotation=(0.0, 0.0)),)}, "supports #1.rotation"),
+        ({"supports": (Clamp("lower", "start", rotation=(0.0, 0.0, 5.0)),)}, "supports #1.rotation"),
+        ({"supports": (Support("nobody", 0.0, ("x",)),)}, "supports #1.rod"),
+        ({"beds": (Bed(RodFace("nobody", "top"), 0.0, 1.0, 1.0),)}, "beds #1.face.rod"),
+        ({"beds": (Bed(RodFace("upper", "under"), 0.0, 1.0, 1.0),)}, "beds #1.face.face"),
+        ({"beds": (Bed(RodFace("upper", "top"), 200.0, 100.0, 1.0),)}, "beds #1.start"),
+        ({"beds": (Bed(RodFace("upper", "top"), 0.0, 300.0, 0.0),)}, "beds #1.modulus"),
     ],
 )
 def test_names_and_positions_that_do_not_exist_are_refused(parts, key):
@@ -193,6 +213,13 @@ def small(x, y):
         (Material, (0.0, 0.3), "young_modulus"),
         (Material, (1.0, 0.5), "poisson_ratio"),
         (Material, (1.0, -1.0), "poisson_ratio"),
+        (Material, (1.0, 0.3, 0.0), "density"),
+        (Material, (1.0, 0.3, 7850.0), "density"),  # kg/m^3
+        (Material, (1.0, 0.3, 7.85e-6), "density"),  # kg/mm^3
+        (Orthotropic, ((1.0, 1.0, 0.0), (1.0, 1.0, 1.0), (0.0, 0.0, 0.0)), "young_moduli"),
+        (Orthotropic, ((1.0, 1.0, 1.0), (1.0, 1.0), (0.0, 0.0, 0.0)), "shear_moduli"),
+        (Orthotropic, ((1.0, 1.0, 1.0), (1.0, 1.0, 1.0), (1.0, 0.0, 0.0)), "poisson_ratios"),
+        (Orthotropic, ((1.0, 1.0, 1.0), (1.0, 1.0, 1.0), (0.0, 0.0, 0.0), -1.0), "density"),
         (Rectangle, (-1.0, 1.0), "width"),
         (Rectangle, (1.0, float("inf")), "height"),
         (Line, ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 1.0, 0.0)), "end"),
@@ -266,6 +293,137 @@ def test_a_rounded_last_border_is_set_to_the_length():
     assert Rod("bow", arc, SQUARE, STEEL, (0.0, 50.0, 157.08)).element_borders == (0.0, 50.0, arc.length)
     error = refusal(Rod, "bow", arc, SQUARE, STEEL, (0.0, 157.0799, 157.08))
     assert error.key == "rods.bow.element_borders"
+
+
+@pytest.mark.parametrize(
+    ("support", "key"),
+    [
+        (Support("lower", 300.1, ("x",)), "position"),
+        (Support("lower", -1.0, ("x",)), "position"),
+        (Support("lower", float("nan"), ("x",)), "position"),
+        (Support("lower", 100.0, ()), "components"),
+        (Support("lower", 100.0, ("z",)), "components"),
+        (Support("lower", 100.0, ("x", "y", "x")), "components"),
+        (Support("lower", 100.0, ("x", "turn s")), "components"),
+        (Support("lower", 100.0, ("x",), "centre"), "of"),
+        (Support("lower", 100.0, ("x", "y"), displacement=(1.0,)), "displacement"),
+        (Support("lower", 100.0, ("x",), displacement=(1.0, 0.0)), "displacement"),
+        (Support("lower", 100.0, ("x",), displacement=(float("nan"),)), "displacement"),
+        (Support("lower", 100.0, ("x", "turn y"), "mean", (0.0, 5.0)), "displacement"),
+    ],
+)
+def test_supports_that_make_no_sense_are_refused(support, key):
+    assert refusal(scene, supports=(support,)).key == f"supports #1.{key}"
+
+
+def test_whole_sections_do_not_turn_but_their_mean_does():
+    turned = Support("lower", 100.0, ("x", "turn s"), "mean", (5.0, 0.1))
+
+    assert scene(supports=(turned,)).supports == (turned,)
+    assert "of = 'mean'" in refusal(scene, supports=(replace(turned, of="section"),)).remedy
+
+
+ARCH = Helix(RADIAL, ORIGIN, AXIS, math.pi / 2.0, AXIS)
+BOW = Rod("bow", ARCH, SQUARE, STEEL, (0.0, ARCH.length))
+
+
+def test_a_support_at_the_rounded_end_of_a_rod_is_at_its_end():
+    mean = Support("bow", 157.08, ("x",), "mean")
+
+    assert scene(rods=(BOW,), contacts=(), supports=(mean,)).supports[0].position == ARCH.length
+    error = refusal(scene, rods=(BOW,), contacts=(), supports=(Clamp("bow", "end"), mean))
+    assert error.key == "supports #2"
+
+
+def test_different_sections_of_a_rod_may_be_supported():
+    supports = (Clamp("lower", "start"), Support("lower", 150.0, ("y",), "mean"), Support("lower", 300.0, ("s",)))
+
+    assert scene(supports=supports).supports == supports
+
+
+BRACE = rod("brace", (300.0, 0.0, 0.0), (400.0, 100.0, 0.0))
+CORNER = Joint((RodEnd("lower", "end"), RodEnd("brace", "start")))
+
+
+def frame(joints=(CORNER,), supports=(), loads=()):
+    return scene(rods=(LOWER, BRACE, UPPER), contacts=(), joints=joints, supports=supports, loads=loads)
+
+
+def test_ends_at_one_point_are_joined():
+    assert frame(supports=(Clamp("lower", "start"), Clamp("brace", "end"))).joints == (CORNER,)
+
+
+@pytest.mark.parametrize(
+    ("ends", "key"),
+    [
+        pytest.param((), "", id="nothing"),
+        pytest.param((RodEnd("lower", "end"),), "", id="one end"),
+        pytest.param((RodEnd("lower", "end"), RodEnd("nobody", "start")), " #2.rod", id="unknown rod"),
+        pytest.param((RodEnd("lower", "middle"), RodEnd("brace", "start")), " #1.end", id="unknown end"),
+        pytest.param((RodEnd("lower", "end"), RodEnd("brace", "end")), " #2", id="not at one point"),
+        pytest.param((RodEnd("lower", "end"), RodEnd("lower", "end")), " #2", id="an end with itself"),
+    ],
+)
+def test_joints_that_make_no_sense_are_refused(ends, key):
+    assert refusal(frame, joints=(Joint(ends),)).key == f"joints #1.ends{key}"
+
+
+def test_an_end_is_joined_once():
+    assert refusal(frame, joints=(CORNER, CORNER)).key == "joints #2.ends #1"
+
+
+@pytest.mark.parametrize(
+    "support",
+    [
+        Clamp("brace", "start"),
+        Support("brace", 0.0, ("y",), "mean"),
+        Support("lower", 300.0, ("y",)),
+        Support("lower", 299.99, ("y",)),  # the end, rounded
+    ],
+)
+def test_an_end_is_joined_or_supported(support):
+    error = refusal(frame, supports=(support,))
+
+    assert error.key.startswith("joints #1.ends #")
+    assert "which has a support" in error.found
+
+
+def test_a_rod_may_close_onto_itself():
+    full = Helix(RADIAL, ORIGIN, AXIS, 2.0 * math.pi, AXIS)
+    hoop = Rod("hoop", full, SQUARE, STEEL, (0.0, full.length))
+    closed = Joint((RodEnd("hoop", "start"), RodEnd("hoop", "end")))
+
+    assert scene(rods=(hoop,), contacts=(), joints=(closed,)).joints == (closed,)
+
+
+@pytest.mark.parametrize(
+    "section", [Circle(10.0), Ring(10.0, 8.0), Polygon(SHARP)], ids=lambda section: type(section).__name__
+)
+def test_beds_and_pressures_need_a_flat_face(section):
+    face = RodFace("lower", "bottom")
+    flat = {"rods": (LOWER,), "contacts": ()}
+    bent = {"rods": (replace(LOWER, section=section),), "contacts": ()}
+    bed, pressure = Bed(face, 0.0, 300.0, 0.05), Pressure(face, 0.0, 300.0, 0.2)
+
+    assert (scene(**flat, beds=(bed,)).beds, scene(**flat, loads=(pressure,)).loads) == ((bed,), (pressure,))
+    assert refusal(scene, **bent, beds=(bed,)).key == "beds #1.face.rod"
+    assert refusal(scene, **bent, loads=(pressure,)).key == "loads #1.face.rod"
+
+
+def test_weight_needs_a_density():
+    heavy = replace(LOWER, material=replace(STEEL, density=7.85e-9))
+    weight = Gravity("lower", (0.0, -9810.0, 0.0))
+
+    assert scene(rods=(heavy,), contacts=(), loads=(weight,)).loads == (weight,)
+    error = refusal(scene, rods=(LOWER,), contacts=(), loads=(weight,))
+    assert (error.key, error.found) == ("loads #1.rod", "'lower', whose material has no density")
+    assert refusal(scene, rods=(heavy,), contacts=(), loads=(replace(weight, acceleration=(0.0, math.inf, 0.0)),))
+
+
+def test_a_place_at_the_rounded_end_of_an_inclined_rod_is_set_to_it():
+    force = SectionForce("brace", 141.42, (0.0, 1.0, 0.0))
+
+    assert frame(loads=(force,)).loads[0].position == math.hypot(100.0, 100.0)
 
 
 @pytest.mark.parametrize("written", [157.08, 157.0796])
