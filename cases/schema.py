@@ -42,7 +42,8 @@ class RodTable(Table):
     element_borders: tuple[Length, ...]
     """Borders of the rod model's elements, a list of rising lengths from 0 to the rod's length, along the rod
     from its start; borders inside a contact zone move to the edges of the contact. The last border may be rounded
-    to four digits, as the length of a curved rod is seldom a round number; a load's place at its end likewise."""
+    to four digits, as the length of a curved or inclined rod is seldom a round number; so may places of loads, supports
+    and beds at its end."""
     centre_line: CentreLineTable
     """The rod's centre line, as table [rods.NAME.centre_line]."""
 

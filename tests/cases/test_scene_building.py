@@ -119,6 +119,10 @@ def test_supports_hold_what_is_written_and_angles_are_in_rad(scene):
         Support("strip", 0.0, ("y", "s")),
         Support("hook", scene.rod("hook").length, ("x",), displacement=(0.1,)),
         Support("beam", 400.0, ("y", "turn x"), "mean", (-0.5, DEGREE)),
+        Support("strip", 200.0, ("x",), "mean"),
+        Clamp("hook", "start"),
+        Clamp("spring", "start"),
+        Clamp("snake", "start"),
     )
 
 
