@@ -95,6 +95,16 @@ def constant_turning(line: CentreLine, left: float, right: float) -> tuple[float
     return None if isinstance(line, Spline | Path) else darboux(line)
 
 
+def by_turning(turning: Array, evaluate: Callable[[tuple[float, float, float]], Array]) -> Array:
+    """What `evaluate` makes of k1, k2, tau at stations, asked once where they are the same.
+
+    turning : shape (3, n)
+    evaluate : gives an array of any shape, for a result of shape (n, ...)
+    """
+    rates, places = np.unique(turning, axis=1, return_inverse=True)
+    return np.stack([evaluate((k1, k2, tau)) for k1, k2, tau in rates.T.tolist()])[places.ravel()]
+
+
 def kinks(line: CentreLine) -> Array:
     """Stations where the turning jumps, mm, ascending: elements end there."""
     return np.array(line.borders[1:-1]) if isinstance(line, Path) else np.empty(0)
