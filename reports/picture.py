@@ -220,10 +220,15 @@ def _add_supports(
             beneath = direction if direction @ up < 0.0 else -direction
             if along:
                 beneath = direction if support.position > 0.5 * rod.length else -direction
-            reach = 0.0 if along else float((outline(rod.section) @ axes[:2] @ beneath).max())
             height = 0.8 * side
+            reach = 0.0 if along else float((outline(rod.section) @ axes[:2] @ beneath).max())
+            start = centre
+            if along and 0 < index < len(found.station) - 1:
+                # Within the rod it would not be seen.
+                over = axes[1] if axes[1] @ up > 0.0 else -axes[1]
+                start = centre + (float((outline(rod.section) @ axes[:2] @ over).max()) + 0.4 * side) * over
             cone = pyvista.Cone(
-                center=centre + (reach + 0.5 * height) * beneath,
+                center=start + (reach + 0.5 * height) * beneath,
                 direction=-beneath,
                 height=height,
                 radius=0.4 * side,

@@ -27,6 +27,8 @@ MARGIN = 46.0
 WIDTH = 500.0
 # An arrow whose part in the plane of the drawing is less than this of its length is drawn end on.
 END_ON = 0.3
+# Room below the foot of a text.
+DESCENT = np.array([0.0, 3.0])
 
 
 @dataclass(frozen=True)
@@ -67,7 +69,9 @@ def scene_sketch(scene: Scene, quantities: Quantities) -> Markup:
     symbols_drawn += [_load(load, scene.rod(load.rod), quantities.rod(load.rod), scale * plane) for load in scene.loads]
     points = np.hstack([band.border for band in bands.values()])
     low, high = points.min(axis=1), points.max(axis=1)
-    low[1] = min([low[1], *(place[1] for drawn in symbols_drawn for place in drawn.room)])
+    room = [place for drawn in symbols_drawn for place in drawn.room]
+    low = np.min([low, *(place + np.array([MARGIN - 6.0, 0.0]) for place in room)], axis=0)
+    high[0] = max([high[0], *(place[0] - MARGIN + 6.0 for place in room)])
     base = float(-low[1]) + 12.0
     parts = [_bar(rod, bands[rod.name]) for rod in scene.rods]
     parts += _zones(scene, quantities, scale * plane)
@@ -77,7 +81,7 @@ def scene_sketch(scene: Scene, quantities: Quantities) -> Markup:
     parts += _positions(scene, quantities, plane, scale, base)
     spare = max(0.0, WIDTH - float(high[0] - low[0])) / 2.0  # text keeps its size beside a slim scene
     left, top = low[0] - MARGIN - spare, -high[1] - 48.0
-    width, height = high[0] - low[0] + 2 * (MARGIN + spare), base + 30.0 - top
+    width, height = high[0] - low[0] + 2 * (MARGIN + spare), base + 36.0 - top
     label = f"Side view of the scene {scene.name}: " + "; ".join(_described(rod) for rod in scene.rods)
     body = "".join(parts)
     return Markup(
@@ -115,9 +119,11 @@ def _bar(rod: Rod, band: _Band) -> str:
     corners = " ".join(f"{x:.2f},{-y:.2f}" for x, y in band.border.T)
     x, y = band.border.mean(axis=1)
     text = _named(rod)
+    width, height = np.ptp(band.border, axis=1)
+    turn = f' transform="rotate(-90 {x:.1f} {-y:.1f})"' if height > 2.0 * width else ""
     return (
         f'<polygon class="bar" points="{corners}"/>'
-        f'<text class="name" x="{x:.1f}" y="{-y + 3.2:.1f}">{escape(text)}</text>'
+        f'<text class="name" x="{x:.1f}" y="{-y + 3.2:.1f}"{turn}>{escape(text)}</text>'
     )
 
 
@@ -148,8 +154,10 @@ def _supports(scene: Scene, quantities: Quantities, bands: dict[str, _Band], pla
             across = 0.9 * (band.left[index] - band.right[index]) * band.normal[:, index]
             drawn.add(symbols.wall(band.centre[:, index], outward, across))
             if any(support.displacement) or any(support.rotation):
-                place = band.centre[:, index] + 14.0 * outward - across - [0.0, 12.0]
-                drawn.add([symbols.text("tick", place, "moved")], place - [0.0, 3.0])
+                sideways = abs(outward[0]) > abs(outward[1])
+                beside = np.array([0.0, -float(np.linalg.norm(across)) - 10.0]) if sideways else 12.0 * outward
+                place = band.centre[:, index] + 4.0 * outward + beside
+                drawn.add([symbols.text("tick", place, "moved")], place - DESCENT)
         else:
             drawn.add(*_component_support(support, scene.rod(support.rod), quantities.rod(support.rod), band, plane))
     return drawn
@@ -180,10 +188,12 @@ def _component_support(
         end = apex + symbols.SUPPORT * outward
     else:
         parts, end = [symbols.held_end_on(apex + 4.0 * outward)], apex + 8.0 * outward
-        outward = np.array([0.0, -1.0])
-    sideways = abs(outward[0]) > abs(outward[1])
-    place = end + ([0.0, -17.0] if sideways else (10.0 if outward[1] < 0.0 else 4.0) * outward)
-    return [*parts, symbols.text("tick", place, words)], place - [0.0, 3.0]
+    half = 0.5 * symbols.LETTER * len(words)
+    if abs(outward[0]) > abs(outward[1]):
+        place = end + np.array([np.sign(outward[0]) * half, -17.0 if seen.shape[1] else -3.0])
+    else:
+        place = end + (10.0 if outward[1] < 0.0 else 4.0) * outward
+    return [*parts, symbols.text("tick", place, words)], place + np.array([np.sign(outward[0]) * half, -3.0])
 
 
 def _beds(scene: Scene, quantities: Quantities, plane: Array) -> _Drawn:
@@ -195,14 +205,14 @@ def _beds(scene: Scene, quantities: Quantities, plane: Array) -> _Drawn:
         flat = np.linalg.norm(normal, axis=0)
         words = f"{bed.modulus:g} N/mm³"
         if flat.min() < END_ON:
-            place = face[:, SPRINGS // 2] - [0.0, 14.0]
+            place = face[:, SPRINGS // 2] - np.array([0.0, 14.0])
             drawn.add([*symbols.bed_end_on(face), symbols.text("tick", place, words)], place)
         else:
             outward = normal / flat
             # A spring off the middle, so that the text does not stand where a load in the middle is drawn.
             place = (face + symbols.BED * outward)[:, SPRINGS // 4]
             place = place + (10.0 if outward[1, SPRINGS // 4] < 0.0 else 4.0) * outward[:, SPRINGS // 4]
-            drawn.add([*symbols.bed(face, outward), symbols.text("tick", place, words)], place - [0.0, 3.0])
+            drawn.add([*symbols.bed(face, outward), symbols.text("tick", place, words)], place - DESCENT)
     return drawn
 
 
@@ -238,8 +248,10 @@ def _load(load: Load, rod: Rod, found: RodQuantities, plane: Array) -> _Drawn:
             drawn.add(symbols.arrow(tip, direction, double=arrows.turning))
             ends[:, index] = far
     middle = ends.shape[1] // 2
-    x, y = ends[:, middle]
     level = flat[middle] >= END_ON and abs(seen[0, middle]) > abs(seen[1, middle])
+    if level:
+        middle = int(ends[1].argmax())
+    x, y = ends[:, middle]
     words = np.array([x, y + 6.0] if level else [x + 9.0, y if arrows.pulling else y - 8.0])
     drawn.add([symbols.text("load", words, arrows.text)], *ends.T)
     return drawn
@@ -252,7 +264,10 @@ def _reach(found: RodQuantities, corners: Array, plane: Array, station: float, s
 
 
 def _positions(scene: Scene, quantities: Quantities, plane: Array, scale: float, base: float) -> list[str]:
-    """Ticks at rod ends, loads and zone ends, where the sketch shows a global axis level."""
+    """Ticks at ends of rods, zones and beds, loads and supports, where the sketch shows a global axis level.
+
+    Numbers that would cover the one before stand a row lower.
+    """
     axis = int(np.argmax(np.abs(plane[0])))
     if abs(plane[0, axis]) < 1.0 - 1e-9:
         return []
@@ -272,8 +287,12 @@ def _positions(scene: Scene, quantities: Quantities, plane: Array, scale: float,
     marks = sorted({(round(scale * float(plane[0] @ place), 6), round(float(place[axis]), 6)) for place in places})
     first, last = marks[0][0], marks[-1][0]
     parts = [f'<line class="axis" x1="{first}" y1="{base:.1f}" x2="{last}" y2="{base:.1f}"/>']
+    taken = [-np.inf, -np.inf]
     for x, label in marks:
+        half = 0.5 * symbols.LETTER * len(f"{label:g}")
+        row = 0 if x - half > taken[0] or taken[1] > taken[0] else 1
+        taken[row] = x + half + 3.0
         parts.append(f'<line class="axis" x1="{x}" y1="{base - 3:.1f}" x2="{x}" y2="{base + 3:.1f}"/>')
-        parts.append(f'<text class="tick" x="{x}" y="{base + 14:.1f}">{label:g}</text>')
+        parts.append(f'<text class="tick" x="{x}" y="{base + 14 + 11 * row:.1f}">{label:g}</text>')
     parts.append(f'<text class="tick" x="{last + 28:.1f}" y="{base + 3:.1f}">{AXES[axis]}, mm</text>')
     return parts

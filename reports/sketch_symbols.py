@@ -11,6 +11,8 @@ ARROW = 34.0
 # How far the symbols of supports and beds reach from the rod.
 SUPPORT = 18.0
 BED = 19.0
+# About the width of a letter.
+LETTER = 4.8
 
 
 def line(kind: str, start: Array, end: Array) -> str:
