@@ -27,7 +27,6 @@ from cases.scene import (
     Scene,
     SectionForce,
     Support,
-    Vector,
 )
 from reports.applied_forces import applied_forces, reactions
 from reports.equilibrium import equilibrium_residual
@@ -54,10 +53,10 @@ def beam(*loads: Load, supports: tuple[Clamp | Support, ...], beds: tuple[Bed, .
     return Scene("beam", (rod(line),), supports, loads, (), beds=beds)
 
 
-def frame(*loads: Load, beam_up: Vector = (0.0, 0.0, 1.0)) -> Scene:
+def frame(*loads: Load) -> Scene:
     """A post of 300 mm, clamped on the ground, and a beam of 400 mm joined to its top."""
     post = rod(Line((0.0, 0.0, 0.0), (0.0, 300.0, 0.0), (0.0, 0.0, 1.0)), "post")
-    top = rod(Line((0.0, 300.0, 0.0), (400.0, 300.0, 0.0), beam_up), "beam")
+    top = rod(Line((0.0, 300.0, 0.0), (400.0, 300.0, 0.0), (0.0, 0.0, 1.0)), "beam")
     joint = Joint((RodEnd("post", "end"), RodEnd("beam", "start")))
     return Scene("frame", (post, top), (Clamp("post", "start"),), loads, (), joints=(joint,))
 
@@ -119,7 +118,7 @@ def test_gravity_bends_and_twists_a_curved_cantilever() -> None:
 
     of_rod = found.rod("rod")
     rest = (ARC.length - of_rod.station) / 100.0
-    # the weight beyond s, at the radius R + I / (A R) of the solid's centroids: M1 = R R_c (1 - cos), T = R R_c sin-like
+    # the weight beyond s, at the radius R + I / (A R) of the centroids of the slices
     weight = 7.85e-9 * 9810.0 * 200.0 * 100.0
     centre = 100.0 + 10.0**2 / 12.0 / 100.0
     assert of_rod.equilibrium[2] == pytest.approx(-weight * rest, abs=ROUND_OFF * weight)
@@ -154,10 +153,13 @@ def test_a_propped_cantilever_shares_its_load() -> None:
 
     found = solved(beam(LineLoad("rod", 0.0, LENGTH, (0.0, -2.0, 0.0)), supports=(Clamp("rod", "start"), prop)))
 
-    # 3 q L / 8 of a slender beam; shear takes 3 E I / (kappa G A L^2) of it, here 2e-3, and the clamp about h / L of that
+    # the beam without its prop sinks by what the prop lifts it; Timoshenko's beam, uncertain by 0.1 h / L, as the
+    # clamp holds the section
     bending, shear = LENGTH**3 / 3.0 / (10.0 * 20.0**3 / 12.0), 2.6 * LENGTH * 6.0 / 5.0 / 200.0
     deflection = LENGTH**4 / 8.0 / (10.0 * 20.0**3 / 12.0) + 2.6 * LENGTH**2 / 2.0 * 6.0 / 5.0 / 200.0
-    assert found.reactions["rod", LENGTH][1] == pytest.approx(2.0 * deflection / (bending + shear), rel=2e-3)
+    assert found.reactions["rod", LENGTH][1] == pytest.approx(
+        2.0 * deflection / (bending + shear), rel=0.1 * 20.0 / LENGTH
+    )
     assert found.equilibrium_residual < ROUND_OFF
 
 
@@ -167,7 +169,7 @@ def test_supports_that_move_without_a_load_are_measured_by_their_reactions() -> 
     found = solved(beam(supports=(Clamp("rod", "start"), moved)))
 
     force = found.reactions["rod", LENGTH][1]
-    # 12 E I delta / L^3 of a slender beam, to which shear adds as above 1 %
+    # 12 E I delta / L^3 of a slender beam; shear makes it 1 % softer, and the clamps as much stiffer
     assert force == pytest.approx(12.0 * 200_000.0 * 10.0 * 20.0**3 / 12.0 * 0.5 / LENGTH**3, rel=0.02)
     of_rod = found.rod("rod")
     assert of_rod.moment == pytest.approx(force * (of_rod.station - LENGTH / 2.0), abs=ROUND_OFF * force * LENGTH)
@@ -194,9 +196,8 @@ def test_a_joint_that_keeps_a_force_to_itself_shows() -> None:
     held = reactions(solution)
     applied = {each.name: applied_forces(solution, each, default_stations(each), held) for each in solution.scene.rods}
 
-    shown = equilibrium_residual(
-        solution.scene, applied, {**held, ("beam", 0.0): held["beam", 0.0] + [6, 0, 0, 0, 0, 0]}
-    )
+    wrong = {**held, ("beam", 0.0): held["beam", 0.0] + np.array([6.0, 0.0, 0.0, 0.0, 0.0, 0.0])}
+    shown = equilibrium_residual(solution.scene, applied, wrong)
 
     # against the largest reaction, the moment of the clamp over the length of the post, 500 N * 400 / 300
     assert shown == pytest.approx(6.0 / (500.0 * 4.0 / 3.0))
