@@ -165,8 +165,8 @@ def test_levels_and_orders_of_some_rods_leave_the_others_as_usual(case):
     levels, orders = case.rod_model.level, case.rod_model.order
 
     assert levels["beam"] == (5, 4, 3)
-    assert levels["spring"] == (6,)  # one number stands for all elements
+    assert levels["spring"] == (6,) * 6  # one number stands for all elements
     assert levels["post"] == (3, 3)
     assert orders["beam"] == (6, 4, 4)
-    assert orders["spring"] == (5,)
+    assert orders["spring"] == (5,) * 6
     assert set(levels) == set(orders) == set(RODS)
