@@ -122,6 +122,11 @@ def not_beyond_end(placed: Placed, rod: Rod) -> Placed:
     return placed
 
 
+def same_station(one: float, other: float, rod: Rod) -> bool:
+    """Whether two arc lengths are meant as one place of a rod."""
+    return math.isclose(one, other, rel_tol=0.0, abs_tol=1e-6 * rod.length)
+
+
 def require_flat_face(rod: Rod, face: Face, key: str) -> None:
     """Raise a SceneError unless the rod has flat faces and this is one of them."""
     require(face in FACES, f"{key}.face", f"'{face}'", f"write one of {', '.join(FACES)}")

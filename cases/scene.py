@@ -21,7 +21,19 @@ from cases.checks import SceneError, Vector, require, require_positive
 from cases.contacts import ContactPair, face_geometry, require_facing
 from cases.loads import Gravity, LineLoad, Load, Pressure, SectionForce, SectionMoment, check_load
 from cases.materials import Material, Orthotropic
-from cases.rods import ENDS, FACES, ROUNDED, End, Face, Rod, RodEnd, RodFace, not_beyond_end, require_flat_face
+from cases.rods import (
+    ENDS,
+    FACES,
+    ROUNDED,
+    End,
+    Face,
+    Rod,
+    RodEnd,
+    RodFace,
+    not_beyond_end,
+    require_flat_face,
+    same_station,
+)
 from cases.sections import Box, Circle, Polygon, Rectangle, Ring, Section, section_reach
 from cases.supports import COMPONENTS, Bed, Clamp, Component, Joint, Support, check_bed, check_support, station_of
 
@@ -126,10 +138,11 @@ class Scene:
             rod = self._rod_at(f"{key}.rod", support.rod)
             supports.append(not_beyond_end(support, rod))
             check_support(supports[-1], rod, key)
-            place = (rod.name, station_of(supports[-1], rod))
-            where = support.end if isinstance(support, Clamp) else f"at {place[1]:g} mm"
-            require(place not in held, key, f"{rod.name} {where} again", "support a section once")
-            held.append(place)
+            station = station_of(supports[-1], rod)
+            again = any(name == rod.name and same_station(other, station, rod) for name, other in held)
+            where = support.end if isinstance(support, Clamp) else f"at {station:g} mm"
+            require(not again, key, f"{rod.name} {where} again", "support a section once")
+            held.append((rod.name, station))
         object.__setattr__(self, "supports", tuple(supports))
 
     def _check_joint(self, joint: Joint, key: str, joined: list[RodEnd]) -> None:
@@ -141,7 +154,9 @@ class Scene:
             again = end in joined or end in joint.ends[: number - 1]
             require(not again, f"{key} #{number}", f"{end.rod} {end.end} again", "join an end once")
             at = 0.0 if end.end == "start" else rod.length
-            held = any(support.rod == end.rod and station_of(support, rod) == at for support in self.supports)
+            held = any(
+                support.rod == end.rod and same_station(station_of(support, rod), at, rod) for support in self.supports
+            )
             remedy = "support it elsewhere, or join fewer"
             require(not held, f"{key} #{number}", f"{end.rod} {end.end}, which has a support", remedy)
             places.append(np.array(rod.centre_line.end_points[ENDS.index(end.end)]))

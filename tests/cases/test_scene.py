@@ -335,6 +335,13 @@ def test_a_support_at_the_rounded_end_of_a_rod_is_at_its_end():
     assert error.key == "supports #2"
 
 
+@pytest.mark.parametrize("written", [100.0, 100.0 + 1e-9])
+def test_a_section_is_supported_once(written):
+    supports = (Support("lower", 100.0, ("x",)), Support("lower", written, ("y",), "mean"))
+
+    assert refusal(scene, supports=supports).key == "supports #2"
+
+
 def test_different_sections_of_a_rod_may_be_supported():
     supports = (Clamp("lower", "start"), Support("lower", 150.0, ("y",), "mean"), Support("lower", 300.0, ("s",)))
 
@@ -377,6 +384,7 @@ def test_an_end_is_joined_once():
     [
         Clamp("brace", "start"),
         Support("brace", 0.0, ("y",), "mean"),
+        Support("brace", 1e-9, ("y",), "mean"),
         Support("lower", 300.0, ("y",)),
         Support("lower", 299.99, ("y",)),  # the end, rounded
     ],
