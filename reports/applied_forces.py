@@ -22,12 +22,12 @@ from cases.scene import (
     SectionMoment,
     station_of,
 )
-from reports.geometry import face_extent, stations_of_points
+from reports.geometry import changes_of_turning, face_extent, stations_of_points
 from reports.second_moments import area_and_second_moments
 from reports.solution import Array, Solution
 
-# Gauss points between two stations. They follow frames that turn steadily to round-off where they turn by no more
-# than a radian in between: a helix or a twisted line; a smooth line of changing curvature to the like.
+# Gauss points between two stations. They follow frames that turn steadily, as those of a helix or a twisted line, to
+# round-off where they turn by no more than a radian in between.
 GAUSS_POINTS = 12
 
 
@@ -71,7 +71,8 @@ def applied_forces(solution: Solution, rod: Rod, station: Array, reactions: Reac
     reactions : of `reactions`
     """
     scene = solution.scene
-    found = [_load(solution, load, rod, station) for load in scene.loads if load.rod == rod.name]
+    smooth = np.union1d(station, changes_of_turning(solution, rod))
+    found = [_load(solution, load, rod, smooth) for load in scene.loads if load.rod == rod.name]
     for pair in scene.contacts:
         for face, sign in ((pair.first, -1.0), (pair.second, 1.0)):
             if face.rod == rod.name:
@@ -118,7 +119,8 @@ def _forces(station: Array, point: Array, force: Array, moment: Array | None = N
     return AppliedForces(station, point, force, moment, np.zeros(len(station), dtype=bool))
 
 
-def _load(solution: Solution, load: Load, rod: Rod, station: Array) -> AppliedForces:
+def _load(solution: Solution, load: Load, rod: Rod, smooth: Array) -> AppliedForces:
+    """One load; `smooth`: arc lengths, ascending, between which it is summed up and the frames turn smoothly."""
     match load:
         case SectionForce() | SectionMoment():
             at = np.array([load.position])
@@ -128,12 +130,12 @@ def _load(solution: Solution, load: Load, rod: Rod, station: Array) -> AppliedFo
                 return _forces(at, point, zero, np.array(load.moment, dtype=float)[:, None])
             return _forces(at, point, np.array(load.force, dtype=float)[:, None])
         case LineLoad():
-            pieces = _pieces(solution, rod, _borders(load.start, load.end, station))
+            pieces = _pieces(solution, rod, _borders(load.start, load.end, smooth))
             return _resultants(pieces, pieces.position, np.multiply.outer(load.force, pieces.weight))
         case Pressure():
-            return _pressure(_pieces(solution, rod, _borders(load.start, load.end, station)), load, rod)
+            return _pressure(_pieces(solution, rod, _borders(load.start, load.end, smooth)), load, rod)
         case Gravity():
-            return _gravity(_pieces(solution, rod, _borders(0.0, rod.length, station)), load, rod)
+            return _gravity(_pieces(solution, rod, _borders(0.0, rod.length, smooth)), load, rod)
 
 
 def _borders(start: float, end: float, station: Array) -> Array:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from cases.scene import Box, ContactPair, Face, Rectangle, Rod
+from cases.scene import Box, ContactPair, Face, Path, Rectangle, Rod, Spline
 from reports.sections import outline
 from reports.solution import Array, Solution
 
@@ -25,6 +25,23 @@ def face_extent(rod: Rod, face: Face) -> tuple[float, float]:
         raise TypeError(f"a {type(rod.section).__name__.lower()} has no flat faces")
     width, height = rod.section.width, rod.section.height
     return (height / 2.0, width) if face in ("top", "bottom") else (width / 2.0, height)
+
+
+def changes_of_turning(solution: Solution, rod: Rod) -> Array:
+    """Arc lengths within a rod, mm, at which the turning of its frame is not smooth: in paths and splines."""
+    line = rod.centre_line
+    pieces, starts = (line.pieces, line.borders) if isinstance(line, Path) else ((line,), (0.0,))
+    found = [np.array(starts[1:-1])]
+    for start, piece in zip(starts, pieces, strict=False):
+        if isinstance(piece, Spline):
+            sampled, points = piece.sampled.station, np.array(piece.points[1:-1]).T
+            station = start + sampled[:: (len(sampled) - 1) // (len(piece.points) - 1)][1:-1]
+            # The samples tell it as well as the chords between them; Newton's method settles it.
+            for _ in range(3):
+                position, axes = solution.frame(rod.name, station)
+                station = station + np.einsum("ni,in->n", axes[:, 2], points - position)
+            found.append(station)
+    return np.concatenate(found)
 
 
 def pair_axis(solution: Solution, pair: ContactPair) -> int:

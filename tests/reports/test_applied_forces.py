@@ -20,6 +20,7 @@ from cases.scene import (
     Line,
     Load,
     Material,
+    Path,
     Polygon,
     Pressure,
     Rectangle,
@@ -29,14 +30,20 @@ from cases.scene import (
     Scene,
     Section,
     SectionForce,
+    Spline,
     Support,
 )
 from reports.applied_forces import AppliedForces, applied_forces, magnitude, reactions
 from reports.solution import Array
+from rodmodel.centre_line import centre_points, frames
 
 RADIUS = 100.0
 ARC = Helix((RADIUS, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, 1.0), math.pi / 2.0, (0.0, 0.0, 1.0))
 HELIX = replace(ARC, angle=3.0 * math.pi, pitch=50.0)
+SPLINE = Spline(
+    ((0.0, 0.0, 0.0), (80.0, 30.0, 0.0), (150.0, 0.0, 40.0), (250.0, 20.0, 60.0), (300.0, 80.0, 0.0)), (0.0, 0.0, 1.0)
+)
+BEND = Path((ARC, Line((0.0, RADIUS, 0.0), (-120.0, RADIUS, 0.0), (0.0, 0.0, 1.0))))
 TWISTED = Line((5.0, 6.0, 7.0), (5.0, 6.0, 407.0), (1.0, 0.0, 0.0), 4.0)
 STEEL = Material(200_000.0, 0.3, 7.85e-9)
 # Twelve Gauss points follow these frames to round-off; sums of some hundred terms leave a few digits less.
@@ -52,13 +59,15 @@ class Springs:
 
 @dataclass(frozen=True)
 class Framed:
-    """Frames in closed form and given reactions; nothing else is asked for here."""
+    """Frames in closed form (of splines and paths the rod model's) and given reactions; no more is asked for here."""
 
     scene: Scene
     held: dict[tuple[str, float], Array] = field(default_factory=dict)
 
     def frame(self, rod: str, station: Array) -> tuple[Array, Array]:
         line = self.scene.rod(rod).centre_line
+        if isinstance(line, Spline | Path):
+            return centre_points(line, station), frames(line, station)
         zero, one = np.zeros_like(station), np.ones_like(station)
         if isinstance(line, Line):
             angle = line.twist * station / line.length
@@ -91,7 +100,7 @@ def scene(line: CentreLine, *loads: Load, section: Section = Rectangle(30.0, 20.
 
 def acting(line: CentreLine, *loads: Load, section: Section = Rectangle(30.0, 20.0)) -> AppliedForces:  # noqa: B008
     """All loads on a rod cut at some stations."""
-    station = np.linspace(0.0, line.length, 13)
+    station = np.linspace(0.0, line.length, 42)
     solution = Framed(scene(line, *loads, section=section))
     return applied_forces(solution, solution.scene.rods[0], station, {})
 
@@ -123,7 +132,9 @@ def test_pressure_on_the_flat_of_a_ring_acts_on_its_sector() -> None:
     assert moment == pytest.approx([-2.0 * first, 2.0 * first, 0.0], rel=ROUND_OFF, abs=ROUND_OFF * first)
 
 
-@pytest.mark.parametrize("line", [ARC, HELIX, TWISTED], ids=["arc", "helix", "twisted line"])
+@pytest.mark.parametrize(
+    "line", [ARC, HELIX, TWISTED, BEND, SPLINE], ids=["arc", "helix", "twisted line", "path", "spline"]
+)
 @pytest.mark.parametrize("section", [Rectangle(30.0, 20.0), Box(30.0, 20.0, 2.0)])
 def test_pressure_all_around_a_rod_and_on_its_ends_is_in_equilibrium(line: CentreLine, section: Section) -> None:
     # a fluid at rest holds every body in it: force and moment of a constant pressure on a closed surface vanish
