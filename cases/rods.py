@@ -81,11 +81,11 @@ def _require_roomy(line: CentreLine, section: Section, key: str) -> None:
     for start, piece in zip(line.borders, line.pieces, strict=False) if isinstance(line, Path) else ((0.0, line),):
         stations, bends = curvatures(piece)
         sizes = np.linalg.norm(bends, axis=1)
+        if np.max(sizes, initial=0.0) * farthest < 1.0:
+            continue
         reaches = [
             section_reach(section, bend / size) if size else 0.0 for bend, size in zip(bends, sizes, strict=True)
         ]
-        if not reaches:
-            continue
         tightest = int(np.argmax(reaches * sizes))
         reach, curvature = reaches[tightest], float(sizes[tightest])
         where = f" at s = {start + stations[tightest]:.3g} mm" if len(stations) > 1 else ""

@@ -30,6 +30,7 @@ from cases.scene import (
     SceneError,
     SectionForce,
     SectionMoment,
+    Spline,
     Support,
 )
 
@@ -285,6 +286,12 @@ def test_sections_fit_into_their_radius_of_curvature(section, up, fits):
         assert Rod("bow", arc, section, STEEL, (0.0, 10.0)).length == 10.0
     else:
         assert refusal(Rod, "bow", arc, section, STEEL, (0.0, 10.0)).key == "rods.bow.centre_line"
+
+
+def test_a_spline_may_be_straight():
+    straight = Spline(((0.0, 0.0, 0.0), (100.0, 0.0, 0.0), (300.0, 0.0, 0.0)), (0.0, 1.0, 0.0))
+
+    assert Rod("ruler", straight, SQUARE, STEEL, (0.0, 300.0)).length == pytest.approx(300.0)
 
 
 def test_a_rounded_last_border_is_set_to_the_length():
