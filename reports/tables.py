@@ -21,6 +21,7 @@ from reports.formatting import (
     values_with_unit,
 )
 from reports.runner import CaseRun, Failure, Run
+from reports.solution import Array
 
 # Tables are never narrower than this, also where the output is a file.
 WIDTH = 150
@@ -42,6 +43,12 @@ def _cost(run: Run) -> str:
 
 def _model(run: Run) -> str:
     return f"rod model h{grades(run.level)}, p = {grades(run.order)}" if run.model == "rod" else "3D reference"
+
+
+def _vector(components: Array) -> str:
+    """Components of a vector; those that are round-off beside the others as 0."""
+    kept = np.where(np.abs(components) > 1e-9 * np.abs(components).max(), components, 0.0)
+    return ", ".join(number(value, 5) for value in kept.tolist())
 
 
 def print_run(case: Case, run: Run) -> None:
@@ -74,9 +81,13 @@ def print_run(case: Case, run: Run) -> None:
             number(rod.end_moment_stress),
             number(rod.max_bending_stress, 5),
         )
+    reactions = Table("reaction on", "at, mm", "force X, Y, Z, N", "moment X, Y, Z, N mm")
+    for (name, station), found in quantities.reactions.items():
+        reactions.add_row(name, f"{station:g}", _vector(found[:3]), _vector(found[3:]))
     if quantities.contacts:
         console.print(contacts)
     console.print(rods)
+    console.print(reactions)
     console.print(
         f"strain energy {number(quantities.strain_energy)} N mm, "
         f"equilibrium residual {quantities.equilibrium_residual:.1e}"

@@ -65,6 +65,17 @@ def test_rods_are_given_station_by_station(printed: dict) -> None:
     assert upper["moment"][-1] == pytest.approx(upper["end_moment_equilibrium"])
 
 
+def test_reactions_are_those_of_both_clamps(printed: dict) -> None:
+    lower, upper = printed["reactions"]
+
+    # the contact force of 320 N, centred at 250 mm, on the lower rod; on the upper one the load of 1 kN against it
+    assert (lower["rod"], lower["station"]) == ("lower", 0.0)
+    assert lower["force"] == pytest.approx([0.0, 320.0, 0.0])
+    assert lower["moment"] == pytest.approx([0.0, 0.0, 320.0 * 250.0])
+    assert (upper["rod"], upper["station"]) == ("upper", 300.0)
+    assert upper["force"] == pytest.approx([0.0, 680.0, 0.0])
+
+
 def test_without_contact_the_centre_is_null_and_there_is_no_edge(case_run: CaseRun) -> None:
     contact = replace(case_run.rod.quantities.contacts[0], force=0.0, centre=None, edges=(), edges_outer=())
     quantities = replace(case_run.rod.quantities, contacts=(contact,))
