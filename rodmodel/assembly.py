@@ -8,19 +8,27 @@ from __future__ import annotations
 
 from collections.abc import Callable, Hashable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 
 from cases.scene import Rod, Scene
 from rodmodel.axial import shape_functions
-from rodmodel.centre_line import darboux
+from rodmodel.centre_line import by_turning, constant_turning, knots, turning_at
 from rodmodel.chain import Chain, node_fields
 from rodmodel.face import Springs, bed_stiffness, springs_under
 from rodmodel.holds import Hold, extended, held_sections, hold, restricted
 from rodmodel.mesh import SAME_BORDER, RodMesh
 from rodmodel.section import Darboux, Fields, axial_modulus, per_axial_modulus, section_stiffness
-from rodmodel.stiffness import Element, ElementFamily, condensed_element, element_family
+from rodmodel.stiffness import (
+    Element,
+    ElementFamily,
+    axial_quadrature,
+    condensed_element,
+    element_family,
+    varying_element,
+)
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -41,15 +49,33 @@ class ElementStore:
     _elements: dict[Hashable, Element] = field(default_factory=dict)
     chains: dict[str, Chain] = field(default_factory=dict)
 
-    def element(
-        self, rod: Rod, turning: Darboux, springs: Springs, fields: Fields, order: int, length: float
-    ) -> Element:
+    def element(self, rod: Rod, springs: Springs, fields: Fields, order: int, ends: tuple[float, float]) -> Element:
         """Condensed element of the rod for unit axial modulus.
 
-        turning : of its frame, rad/mm
         springs : beds under its faces, their moduli in units of the axial modulus
-        length : mm
+        ends : arc length of its ends, mm
         """
+        turning = constant_turning(rod.centre_line, *ends)
+        if turning is None:
+            return self._varying(rod, springs, fields, order, ends)
+        return self._constant(rod, turning, springs, fields, order, ends[1] - ends[0])
+
+    def _varying(self, rod: Rod, springs: Springs, fields: Fields, order: int, ends: tuple[float, float]) -> Element:
+        material, line = per_axial_modulus(rod.material), rod.centre_line
+        key = (line, rod.section, material, fields, order, springs, ends)
+        if key not in self._elements:
+            quadrature = axial_quadrature(order, *ends, knots(line))
+            turning = turning_at(line, ends[0] + 0.5 * (ends[1] - ends[0]) * (1.0 + quadrature[0]))
+            section = section_stiffness(rod.section, material, fields, turning)
+            if springs:
+                beds = by_turning(turning, lambda rates: bed_stiffness(rod.section, springs, fields, rates))
+                section = replace(section, s00=section.s00 + beds)
+            self._elements[key] = varying_element(order, fields, ends[1] - ends[0], quadrature, section)
+        return self._elements[key]
+
+    def _constant(
+        self, rod: Rod, turning: Darboux, springs: Springs, fields: Fields, order: int, length: float
+    ) -> Element:
         kind = (rod.section, per_axial_modulus(rod.material), fields, order, turning, springs)
         if kind not in self._families:
             section = section_stiffness(rod.section, per_axial_modulus(rod.material), fields, turning)
@@ -107,11 +133,11 @@ class AssembledRod:
 
 def assembled_rod(scene: Scene, rod: Rod, mirrors: Mirrors, mesh: RodMesh, store: ElementStore) -> AssembledRod:
     """Make (or fetch from `store`) the elements of the mesh and factorise the chain."""
-    turning = darboux(rod.centre_line)
+    under = springs_under(scene, rod, mesh.borders)
     elements = tuple(
-        store.element(rod, turning, springs, Fields(int(level), *mirrors), int(order), float(length))
-        for level, order, length, springs in zip(
-            mesh.levels, mesh.orders, np.diff(mesh.borders), springs_under(scene, rod, mesh.borders), strict=True
+        store.element(rod, springs, Fields(int(level), *mirrors), int(order), ends)
+        for level, order, ends, springs in zip(
+            mesh.levels, mesh.orders, pairwise(mesh.borders.tolist()), under, strict=True
         )
     )
     fields = node_fields(elements)

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from cases.scene import Bed, Rod
 from rodmodel.axial import gauss
-from rodmodel.centre_line import darboux, frames, global_points
+from rodmodel.centre_line import frames, global_points, turning_at
 from rodmodel.face import face_strip
 
 Array = NDArray[np.float64]
@@ -49,12 +49,14 @@ def bed_forces(
     half = 0.5 * np.diff(cuts)
     along = (0.5 * (cuts[:-1] + cuts[1:])[:, None] + half[:, None] * root).ravel()
     length = (half[:, None] * weight).ravel()
-    strip = face_strip(rod.section, bed.face.face, darboux(rod.centre_line), level)
-    count = len(strip.x)
-    station = np.repeat(along, count)
-    points = np.array([np.tile(strip.x, len(along)), np.tile(strip.y, len(along)), station])
-    area = np.tile(strip.size, len(along)) * np.repeat(length, count)
-    unit = np.tile(strip.area / strip.size, len(along))
+    turning = turning_at(rod.centre_line, along).T.tolist()
+    strips = [face_strip(rod.section, bed.face.face, (k1, k2, tau), level) for k1, k2, tau in turning]
+    counts = [len(strip.x) for strip in strips]
+    station = np.repeat(along, counts)
+    points = np.array([*np.concatenate([[strip.x, strip.y] for strip in strips], axis=1), station])
+    size = np.concatenate([strip.size for strip in strips])
+    area = size * np.repeat(length, counts)
+    unit = np.concatenate([strip.area for strip in strips], axis=1) / size
     normal = np.einsum("ncg,cn->gn", frames(rod.centre_line, station), unit)
     outward = np.einsum("gn,gn->n", normal, displacement_at(points))
     force = -bed.modulus * area * outward * normal

@@ -27,6 +27,7 @@ from cases.scene import (
     SectionMoment,
     Support,
 )
+from rodmodel.centre_line import kinks
 from rodmodel.mesh import SAME_BORDER, RodMesh, rod_mesh, split, stretched
 from rodmodel.pairing import opposite_stations
 
@@ -66,7 +67,10 @@ class RodBorders:
 
 
 def natural_mesh(scene: Scene, rod: Rod, level: int | Sequence[int], order: int | Sequence[int]) -> RodMesh:
-    """The rod's elements, split where they miss loads, supports, beds and zone ends: fields have kinks there."""
+    """The rod's elements, split where they miss loads, supports, beds, zone ends and jumps of curvature.
+
+    Fields have kinks there.
+    """
     return split(rod_mesh(rod, level, order), _held_stations(scene, rod))
 
 
@@ -74,7 +78,7 @@ def _held_stations(scene: Scene, rod: Rod) -> Array:
     acting = [*scene.loads, *scene.supports, *scene.beds]
     acts = [at for each in acting if each.rod == rod.name for at in _acts_at(each)]
     zones = [station for pair in scene.contacts for station in _on_rod(scene, pair, rod, np.array(pair.zone))]
-    return np.array([0.0, rod.element_borders[-1], *acts, *zones])
+    return np.array([0.0, rod.element_borders[-1], *kinks(rod.centre_line), *acts, *zones])
 
 
 def _acts_at(acting: Load | Clamp | Support | Bed) -> tuple[float, ...]:

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from cases.scene import Gravity, LineLoad, Load, Pressure, Rod, SectionForce, SectionMoment
 from rodmodel.assembly import AssembledRod, Part, point_parts
 from rodmodel.axial import gauss, shape_functions
-from rodmodel.centre_line import darboux, frames
+from rodmodel.centre_line import by_turning, frames, turning_at
 from rodmodel.face import pressure_work
 from rodmodel.resultants import even_traction, linear_traction
 from rodmodel.section import Fields, product_quadrature, section_values
@@ -74,11 +74,10 @@ def _line_force(rod: Rod, load: LineLoad) -> Density:
 
 
 def _face_force(rod: Rod, load: Pressure) -> Density:
-    turning = darboux(rod.centre_line)
-
     def density(fields: Fields, station: Array) -> Array:
-        work = load.pressure * pressure_work(rod.section, load.face.face, fields, turning)
-        return np.broadcast_to(work, (len(station), fields.count))
+        turning = turning_at(rod.centre_line, station)
+        work = by_turning(turning, lambda rates: pressure_work(rod.section, load.face.face, fields, rates))
+        return load.pressure * work
 
     return density
 
@@ -87,13 +86,13 @@ def _weight(rod: Rod, load: Gravity) -> Density:
     if rod.material.density is None:
         raise ValueError(f"rod '{rod.name}': gravity needs a density")
     per_volume = rod.material.density * np.asarray(load.acceleration)
-    turning = darboux(rod.centre_line)
 
     def density(fields: Fields, station: Array) -> Array:
+        k1, k2, _ = turning = turning_at(rod.centre_line, station)
         x, y, weight = product_quadrature(rod.section, fields.level, turning)
-        # A unit force per volume along each axis: sqrt(g) makes it act off the centre line of a curved rod.
-        volume = section_values(rod.section, fields, x, y) @ (weight * (1.0 - turning[1] * x + turning[0] * y))
-        work = np.where(np.arange(3)[:, None] == fields.table[0], volume, 0.0)
-        return np.asarray(frames(rod.centre_line, station) @ per_volume @ work)
+        # A unit force per volume: sqrt(g) makes it act off the centre line of a curved rod.
+        stretch = 1.0 - k2[:, None] * x + k1[:, None] * y
+        volume = (weight * stretch) @ section_values(rod.section, fields, x, y).T
+        return np.asarray((frames(rod.centre_line, station) @ per_volume)[:, fields.table[0]] * volume)
 
     return density

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from cases.scene import COMPONENTS, Bed, Joint, Rod, Scene, SceneError, Support
 from rodmodel.assembly import Mirrors
-from rodmodel.centre_line import centre_points, darboux, frames
+from rodmodel.centre_line import centre_points, frames, turning_at
 from rodmodel.face import face_strip
 from rodmodel.holds import held_sections
 from rodmodel.joints import symmetric_motions
@@ -86,9 +86,10 @@ def _resisted_by(support: Support) -> tuple[str, ...]:
 
 
 def _resisted_by_bed(bed: Bed, rod: Rod, centre: Array) -> list[Array]:
-    strip = face_strip(rod.section, bed.face.face, darboux(rod.centre_line), 1)
     rows = []
-    for station in np.linspace(bed.start, bed.end, 5):
+    stations = np.linspace(bed.start, bed.end, 5)
+    for station, (k1, k2, tau) in zip(stations, turning_at(rod.centre_line, stations).T.tolist(), strict=True):
+        strip = face_strip(rod.section, bed.face.face, (k1, k2, tau), 1)
         point, axes = _section(rod, station)
         for x, y, area in zip(strip.x, strip.y, strip.area.T, strict=True):
             rows.append(_along(axes.T @ area / np.linalg.norm(area), point + x * axes[0] + y * axes[1] - centre))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,13 +13,14 @@ from cases.scene import Rod, Scene
 from rodmodel.assembly import AssembledRod
 from rodmodel.axial import shape_function_slopes, shape_functions
 from rodmodel.beds import BedForces, bed_forces
-from rodmodel.centre_line import centre_points, darboux, frames, global_points
+from rodmodel.centre_line import by_turning, centre_points, frames, global_points, turning_at
 from rodmodel.edges import Stretch
 from rodmodel.mesh import SAME_BORDER
 from rodmodel.pairing import face_axes, facing_points
 from rodmodel.profile import ContactProfile, pressure_profile
 from rodmodel.resultants import rigid_motions
 from rodmodel.section import (
+    Darboux,
     Fields,
     U,
     V,
@@ -145,8 +147,9 @@ class Solution:
         station = np.atleast_1d(np.asarray(station, dtype=float))
         result = np.empty((6, len(station)))
         for fields, members, psi, slope in self._axial(assembled, station):
-            sums_0, sums_1 = _resultant_operators(assembled.rod, fields)
-            result[:, members] = sums_0 @ psi + sums_1 @ slope
+            turning = turning_at(assembled.rod.centre_line, station[members])
+            sums = by_turning(turning, partial(_resultant_operators, assembled.rod, fields))
+            result[:, members] = np.einsum("nrf,fn->rn", sums, np.concatenate([psi, slope]))
         return result
 
     def reaction(self, rod: str, station: float) -> Array:
@@ -219,11 +222,11 @@ class Solution:
 
     def _strain_and_level(self, rod: str, points: Array) -> tuple[Array, IntArray]:
         assembled = self.system.rods[rod]
-        turning = darboux(assembled.rod.centre_line)
+        turning = turning_at(assembled.rod.centre_line, points[2])
         strain, levels = np.empty((6, points.shape[1])), np.empty(points.shape[1], dtype=np.int64)
         for fields, members, psi, slope in self._axial(assembled, points[2]):
             x, y = points[:2, members]
-            b0, b1, _ = strain_operators(assembled.rod.section, fields, x, y, turning)
+            b0, b1, _ = strain_operators(assembled.rod.section, fields, x, y, turning[:, members])
             strain[:, members] = np.einsum("pcf,fp->cp", b0, psi) + np.einsum("pcf,fp->cp", b1, slope)
             levels[members] = fields.level
         return strain, levels
@@ -245,9 +248,8 @@ class Solution:
             yield fields, members, psi, slope
 
 
-def _resultant_operators(rod: Rod, fields: Fields) -> tuple[Array, Array]:
-    """What psi and psi' of every field add to N, Q1, Q2, M1, M2, T, each of shape (6, n_fields)."""
-    turning = darboux(rod.centre_line)
+def _resultant_operators(rod: Rod, fields: Fields, turning: Darboux) -> Array:
+    """What psi and then psi' of every field add to N, Q1, Q2, M1, M2, T, shape (6, 2 n_fields)."""
     x, y, weight = product_quadrature(rod.section, fields.level, turning)
     b0, b1, _ = strain_operators(rod.section, fields, x, y, turning)
     # What each stress component at a point adds to each resultant; components xx, yy, xy add nothing.
@@ -255,4 +257,4 @@ def _resultant_operators(rod: Rod, fields: Fields) -> tuple[Array, Array]:
     lever[0, 2], lever[1, 4], lever[2, 3] = 1.0, 1.0, 1.0
     lever[3, 2], lever[4, 2], lever[5, 3], lever[5, 4] = y, -x, x, -y
     sums = np.einsum("rcp,cd,p->rpd", lever, elasticity_matrix(rod.material, fields.level), weight).reshape(6, -1)
-    return sums @ b0.reshape(-1, fields.count), sums @ b1.reshape(-1, fields.count)
+    return np.concatenate([sums @ b0.reshape(-1, fields.count), sums @ b1.reshape(-1, fields.count)], axis=1)

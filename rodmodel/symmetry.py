@@ -12,18 +12,22 @@ from numpy.typing import NDArray
 from cases.scene import (
     Clamp,
     Gravity,
+    Helix,
+    Line,
     LineLoad,
     Load,
+    Path,
     Pressure,
     Rod,
     Scene,
     SectionForce,
     SectionMoment,
+    Spline,
     Support,
     Vector,
 )
 from rodmodel.assembly import Mirrors
-from rodmodel.centre_line import frame, frames, screw_motion
+from rodmodel.centre_line import centre_points, frame, frames, screw_motion
 from rodmodel.pairing import face_axes
 from rodmodel.shape import mirror_planes
 
@@ -61,13 +65,25 @@ def _is_mirror_plane(scene: Scene, normal: Array) -> bool:
 
 def _lies_in(rod: Rod, origin: Array, normal: Array) -> bool:
     """Whether a rod's centre line lies in the plane, and its section is and stays symmetric about it."""
-    motion = screw_motion(rod.centre_line)
-    if abs(normal @ (motion.start - origin)) > TOLERANCE * rod.length:
+    across = np.abs(frame(rod.centre_line)[:2] @ normal) > 1.0 - TOLERANCE
+    if not np.any(across & mirror_planes(rod.section)):
         return False
-    across = [abs(axis @ normal) > 1.0 - TOLERANCE for axis in motion.axes[:2]]
-    if not any(mirror and lies for mirror, lies in zip(mirror_planes(rod.section), across, strict=True)):
+    pieces = rod.centre_line.pieces if isinstance(rod.centre_line, Path) else (rod.centre_line,)
+    return all(_piece_lies_in(piece, origin, normal, TOLERANCE * rod.length) for piece in pieces)
+
+
+def _piece_lies_in(piece: Line | Helix | Spline, origin: Array, normal: Array, slack: float) -> bool:
+    """Whether a piece of a centre line, whose frame has an axis along the normal at its start, lies in the plane."""
+    if abs(normal @ (np.array(piece.start) - origin)) > slack:
         return False
+    if isinstance(piece, Spline):
+        # A cubic lies in the plane if four of its points do; with a frame that stays aligned, the section does.
+        station = np.linspace(0.0, piece.length, 4 * len(piece.points))
+        aligned = np.abs(frames(piece, station)[:, :2] @ normal).max(axis=1) > 1.0 - TOLERANCE
+        height = normal @ centre_points(piece, station) - normal @ origin
+        return bool(np.all(aligned) and np.all(np.abs(height) <= slack))
     # A line that does not turn stays in the plane; one that turns must do so about the plane's normal.
+    motion = screw_motion(piece)
     return motion.turning == 0.0 or bool(abs(motion.axis @ normal) > 1.0 - TOLERANCE)
 
 
