@@ -7,15 +7,13 @@ import plotly.graph_objects as go
 
 from reports.figures import FONT, GRID, INK, REFERENCE, ROD
 from reports.performance.levels import LevelStudy
-from reports.performance.scaling import Series
-from reports.performance.wording import kind
+from reports.performance.scaling import BoolArray, PowerLaw, Series
+from reports.performance.wording import count, kind
 from reports.solution import Array
 
 HEIGHT = 400
 # Elements of equal length, of unequal length; as in the other figures also told apart without colour
 _LOOKS = {True: {"color": ROD, "symbol": "circle"}, False: {"color": REFERENCE, "symbol": "square"}}
-# Growth of the resident memory is known to about this, MB; less of it is not drawn.
-RESOLUTION = 1.0
 # Errors below this are not drawn as if they meant something.
 FLOOR = 1e-7
 _ORDER_LOOKS = (("#0072B2", "circle", "solid"), ("#D55E00", "square", "dash"), ("#007A5A", "diamond", "dot"))
@@ -32,28 +30,16 @@ def seconds_figure(series: tuple[Series, ...]) -> go.Figure:
             "thickness": 1,
             "width": 3,
         }
-        _points(figure, one, one.seconds, kind(one), "%{x} elements: %{y:.3g} s", error_y=spread)
-        _line(figure, one, one.seconds)
+        all_sizes = np.full(len(one.sizes), fill_value=True)
+        _curve(figure, one, one.seconds, all_sizes, one.time_law, "%{x} elements: %{y:.3g} s", error_y=spread)
     return _styled(figure, "seconds")
 
 
 def memory_figure(series: tuple[Series, ...]) -> go.Figure:
-    """Memory held for a solve with the fitted lines, and the growth of the process where it can be told."""
+    """Growth of the process that solves, where it can be told, and the fitted lines."""
     figure = go.Figure()
     for one in series:
-        _points(figure, one, one.allocated, f"held, {kind(one)}", "%{x} elements: %{y:.3g} MB")
-        _line(figure, one, one.allocated)
-    for one in series:
-        grown = one.growth > RESOLUTION
-        look = _LOOKS[one.equal]
-        figure.add_scatter(
-            x=one.elements[grown].tolist(),
-            y=_rounded(one.growth[grown]),
-            name=f"growth of the process, {kind(one)}",
-            mode="markers",
-            marker={"symbol": f"{look['symbol']}-open", "size": 10, "color": look["color"], "line": {"width": 1.6}},
-            hovertemplate="%{x} elements: %{y:.3g} MB",
-        )
+        _curve(figure, one, one.growth, one.resolved, one.memory_law, "%{x} elements: %{y:.3g} MB")
     return _styled(figure, "MB")
 
 
@@ -62,13 +48,14 @@ def relative_figure(series: tuple[Series, ...]) -> go.Figure:
     figure = go.Figure()
     for one in series:
         look = _LOOKS[one.equal]
-        for what, costs, mark, dash in (
-            ("seconds", one.seconds, "", "solid"),
-            ("memory", one.allocated, "-open", "dot"),
+        every = np.full(len(one.sizes), fill_value=True)
+        for what, costs, drawn, mark, dash in (
+            ("seconds", one.seconds, every, "", "solid"),
+            ("memory", one.growth, one.resolved, "-open", "dot"),
         ):
             figure.add_scatter(
-                x=one.elements.tolist(),
-                y=_rounded(one.relative(costs)),
+                x=one.elements[drawn].tolist(),
+                y=_rounded(one.relative(costs)[drawn]),
                 name=f"{what}, {kind(one)}",
                 mode="lines+markers",
                 line={"color": look["color"], "width": 1.6, "dash": dash},
@@ -105,29 +92,30 @@ def levels_figure(study: LevelStudy) -> go.Figure:
     return figure
 
 
-def _points(figure: go.Figure, one: Series, costs: Array, name: str, hover: str, **more: object) -> None:
+def _curve(
+    figure: go.Figure, one: Series, costs: Array, drawn: BoolArray, law: PowerLaw | None, hover: str, **more: object
+) -> None:
+    """Costs of the sizes to be drawn, and the fitted line where it was fitted."""
     look = _LOOKS[one.equal]
-    slope = one.fit(costs).slope
+    slope = "" if law is None else f": slope {law.slope:.2f} from {count(round(law.start))} on"
     figure.add_scatter(
-        x=one.elements.tolist(),
-        y=_rounded(costs),
-        name=f"{name}: slope {slope:.2f} from {one.fitted_from} on",
+        x=one.elements[drawn].tolist(),
+        y=_rounded(costs[drawn]),
+        name=f"{kind(one)}{slope}",
         mode="markers",
         marker={"symbol": look["symbol"], "size": 8, "color": look["color"]},
         hovertemplate=hover,
         **more,
     )
-
-
-def _line(figure: go.Figure, one: Series, costs: Array) -> None:
-    """The fitted line, where it was fitted."""
-    ends = np.array([float(one.fitted_from), one.elements[-1]])
+    if law is None:
+        return
+    ends = np.array([law.start, law.end])
     figure.add_scatter(
         x=ends.tolist(),
-        y=_rounded(one.fit(costs).at(ends)),
+        y=_rounded(law.at(ends)),
         showlegend=False,
         mode="lines",
-        line={"color": _LOOKS[one.equal]["color"], "width": 1.6},
+        line={"color": look["color"], "width": 1.6},
         hoverinfo="skip",
     )
 

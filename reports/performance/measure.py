@@ -16,7 +16,7 @@ from rich.progress import Progress as Bars
 from reports.performance import levels, parts, scaling
 from reports.performance.levels import LevelStudy, measured_levels
 from reports.performance.parts import Breakdown, measured_parts
-from reports.performance.scaling import Series, empty_process, measured_size
+from reports.performance.scaling import Kind, Series, Size, empty_process, measured_seconds, measured_size
 from reports.processes import in_own_process
 
 
@@ -47,18 +47,15 @@ def measure() -> Performance:
     console = Console(stderr=True)
     columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
     with Bars(*columns, console=console, transient=True, disable=not console.is_terminal) as bars:
-        task = bars.add_task("", total=len(scaling.SIZES) + len(scaling.UNEQUAL_SIZES) + 3)
+        kinds = [(elements, True) for elements in scaling.SIZES]
+        kinds += [(elements, False) for elements in scaling.UNEQUAL_SIZES]
+        task = bars.add_task("", total=scaling.ROUNDS + len(kinds) + 3)
 
         def begun(what: str) -> None:
             bars.update(task, description=f"performance: {what}")
             bars.advance(task)
 
-        begun("an empty process")
-        empty = in_own_process(empty_process, None)
-        series = (
-            measured_series(True, scaling.SIZES, empty, begun),
-            measured_series(False, scaling.UNEQUAL_SIZES, empty, begun),
-        )
+        series = measured_series(kinds, begun)
         begun("parts of a solve")
         breakdown = in_own_process(measured_parts, parts.REPEATS)
         begun("levels and orders")
@@ -66,13 +63,17 @@ def measure() -> Performance:
     return Performance(series, breakdown, study, machine())
 
 
-def measured_series(equal: bool, sizes: Sequence[int], empty: float, begun: Callable[[str], None]) -> Series:
-    """Each number of elements in a process of its own; `begun` is told which begins."""
-    found = []
-    for elements in sizes:
-        begun(f"{elements} elements{'' if equal else ' of unequal length'}")
-        found.append(in_own_process(measured_size, (elements, equal)))
-    return Series(equal, tuple(found), empty)
+def measured_series(kinds: Sequence[Kind], begun: Callable[[str], None]) -> tuple[Series, ...]:
+    """Seconds of all numbers of elements in one process, memory of each in its own; `begun` is told what begins."""
+    seconds = in_own_process(measured_seconds, kinds, begun)
+    begun("memory of an empty process")
+    empty = in_own_process(empty_process, None)
+    sizes: dict[bool, list[Size]] = {}
+    for kind in kinds:
+        elements, equal = kind
+        begun(f"memory of {elements} elements{'' if equal else ' of unequal length'}")
+        sizes.setdefault(equal, []).append(in_own_process(measured_size, (kind, seconds[kind])))
+    return tuple(Series(equal, tuple(found), empty) for equal, found in sizes.items())
 
 
 def machine() -> str:

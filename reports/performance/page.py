@@ -11,7 +11,7 @@ from reports.performance.figures import levels_figure, memory_figure, relative_f
 from reports.performance.levels import LevelStudy
 from reports.performance.measure import Performance
 from reports.performance.parts import QUANTITIES, TEXTS, WHOLE, Breakdown
-from reports.performance.scaling import LEVEL, ORDER, Series
+from reports.performance.scaling import LEVEL, ORDER, RESOLUTION, Series
 from reports.performance.wording import milliseconds, percent, spread
 from reports.store import write_whole
 
@@ -45,7 +45,7 @@ def render(found: Performance) -> str:
         machine=found.machine,
         level=LEVEL,
         order=ORDER,
-        fitted_from=found.series[0].fitted_from,
+        resolution=RESOLUTION,
         largest=wording.count(found.series[0].sizes[-1].elements),
         aims=wording.aims(found.series),
         seconds_caption=wording.seconds_caption(found.series),
@@ -75,11 +75,11 @@ def _size_rows(series: Series) -> list[list[str]]:
             str(size.timing.runs),
             f"{1e6 * size.timing.median / size.elements:.0f}",
             f"{times:.2f}",
-            wording.megabytes(size.allocated),
-            f"{grown:.1f}",
+            f"{size.resident:.1f}",
+            f"{grown:.1f}" if told else f"below {RESOLUTION:g}",
             f"{-1e3 * size.deflection:.5f}",
         ]
-        for size, times, grown in zip(series.sizes, relative, series.growth, strict=True)
+        for size, times, grown, told in zip(series.sizes, relative, series.growth, series.resolved, strict=True)
     ]
 
 
@@ -102,7 +102,7 @@ def _part_rows(breakdown: Breakdown) -> list[dict[str, Any]]:
     ]
     rest = row(
         "Everything else",
-        "the whole less its parts: displacements, energy, symmetry, meshes",
+        "the whole less its parts: displacements, energy, symmetry; below zero it is noise",
         breakdown.rest,
         "",
         inside=True,

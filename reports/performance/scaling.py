@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import time
-import tracemalloc
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
+from numpy.typing import NDArray
 
 import rodmodel as rm
 from reports.memory import peak_memory
@@ -15,13 +15,19 @@ from reports.performance.timing import Timing, repeated
 from reports.processes import Progress
 from reports.solution import Array
 
+BoolArray = NDArray[np.bool_]
+
 LEVEL, ORDER = 2, 4
 SIZES = (10, 30, 100, 300, 1000, 3000, 10_000)
-UNEQUAL_SIZES = (10, 100, 1000, 10_000)
+UNEQUAL_SIZES = (10, 100, 1000, 3000, 10_000)
 # The slope that counts is fitted from here on; below, what a solve costs whatever its size weighs too much.
 FITTED_FROM = 100
-# Each number of elements is solved until so many seconds are spent, but so often.
-SECONDS, AT_LEAST, AT_MOST = 0.2, 3, 11
+# All numbers of elements are timed in turn, so many times over; small ones each time until so many processor seconds
+# are spent, but so often at most.
+ROUNDS = 3
+SECONDS, AT_MOST = 0.05, 5
+# What a process grows by less than this, MB, is lost in what the operating system and Python hand out at once.
+RESOLUTION = 2.0
 
 LENGTH, SIDE = 1000.0, 15.0
 
@@ -46,22 +52,21 @@ def cantilever(elements: int, equal: bool) -> rm.Scene:
 
 @dataclass(frozen=True)
 class Size:
-    """What one number of elements costs.
+    """One number of elements, solved in a process of its own.
 
     Attributes
     ----------
-    allocated : largest memory that Python and NumPy held for the solve, MB, as tracemalloc counts it
-    resident : largest resident memory of the process that solved it, MB
+    resident : largest resident memory of the process, MB
     deflection : of the loaded end, mm
+    timing : processor seconds of a solve
     """
 
     elements: int
     unknowns: int
     outcome: str
-    timing: Timing
-    allocated: float
     resident: float
     deflection: float
+    timing: Timing
 
 
 @dataclass(frozen=True)
@@ -73,7 +78,7 @@ class Series:
     equal : whether the elements are all of one length
     sizes : with rising numbers of elements, two at least
     empty : largest resident memory of a process that solved a single element, MB
-    fitted_from : number of elements from which on slopes are fitted; two sizes are as large at least
+    fitted_from : number of elements from which on the slope of seconds is fitted; two sizes are as large at least
     """
 
     equal: bool
@@ -88,27 +93,36 @@ class Series:
 
     @property
     def seconds(self) -> Array:
-        """Median seconds of a solve, shape (n_sizes,)."""
+        """Median processor seconds of a solve, shape (n_sizes,)."""
         return np.array([size.timing.median for size in self.sizes])
-
-    @property
-    def allocated(self) -> Array:
-        """Memory held for a solve, MB, shape (n_sizes,)."""
-        return np.array([size.allocated for size in self.sizes])
 
     @property
     def growth(self) -> Array:
         """Largest resident memory above that of an empty process, MB, shape (n_sizes,)."""
         return np.array([size.resident - self.empty for size in self.sizes])
 
-    def fit(self, costs: Array) -> PowerLaw:
-        """Fit of `costs` from `fitted_from` elements on."""
-        large = self.elements >= self.fitted_from
-        return power_law(self.elements[large], costs[large])
+    @property
+    def resolved(self) -> BoolArray:
+        """Sizes whose memory can be told from that of an empty process, shape (n_sizes,)."""
+        return self.growth > RESOLUTION
 
-    def fit_of_all(self, costs: Array) -> PowerLaw:
-        """Fit of `costs` to all sizes."""
-        return power_law(self.elements, costs)
+    @property
+    def time_law(self) -> PowerLaw:
+        """Seconds from `fitted_from` elements on."""
+        large = self.elements >= self.fitted_from
+        return power_law(self.elements[large], self.seconds[large])
+
+    @property
+    def time_law_of_all(self) -> PowerLaw:
+        """Seconds of all sizes."""
+        return power_law(self.elements, self.seconds)
+
+    @property
+    def memory_law(self) -> PowerLaw | None:
+        """Growth of the process where it can be told; None where two sizes cannot."""
+        if np.count_nonzero(self.resolved) < 2:
+            return None
+        return power_law(self.elements[self.resolved], self.growth[self.resolved])
 
     def relative(self, costs: Array) -> Array:
         """Cost of one element relative to that in the largest size: 1 where cost is proportional to the number."""
@@ -118,10 +132,17 @@ class Series:
 
 @dataclass(frozen=True)
 class PowerLaw:
-    """cost = factor * n^slope: a straight line on logarithmic scales."""
+    """cost = factor * n^slope: a straight line on logarithmic scales.
+
+    Attributes
+    ----------
+    start, end : least and greatest n it was fitted to
+    """
 
     slope: float
     factor: float
+    start: float
+    end: float
 
     def at(self, numbers: Array) -> Array:
         """The line at numbers n."""
@@ -131,28 +152,33 @@ class PowerLaw:
 def power_law(numbers: Array, costs: Array) -> PowerLaw:
     """The straight line through log cost against log n that is nearest in the least squares."""
     slope, intercept = np.polyfit(np.log(numbers), np.log(costs), 1)
-    return PowerLaw(float(slope), float(np.exp(intercept)))
+    return PowerLaw(float(slope), float(np.exp(intercept)), float(numbers.min()), float(numbers.max()))
 
 
-def measured_size(given: tuple[int, bool], progress: Progress) -> Size:
-    """Solve so many elements, equal or not, again and again, and see what it takes; meant for a process of its own."""
-    del progress
-    elements, equal = given
+Kind = tuple[int, bool]
+"""How many elements, and whether they are equal."""
+
+
+def measured_seconds(given: Sequence[Kind], progress: Progress) -> dict[Kind, Timing]:
+    """Processor seconds of solves, all in turn, so that a slow spell of the machine meets them all."""
     rm.solve(cantilever(1, equal=True), LEVEL, ORDER)
-    scene = cantilever(elements, equal)
-    begin = time.perf_counter()
-    solution = rm.solve(scene, LEVEL, ORDER)
-    first = time.perf_counter() - begin
+    scenes = {kind: cantilever(*kind) for kind in given}
+    seconds: dict[Kind, tuple[float, ...]] = dict.fromkeys(given, ())
+    for number in range(ROUNDS):
+        progress(f"seconds of a solve, round {number + 1} of {ROUNDS}")
+        for kind, scene in scenes.items():
+            seconds[kind] += repeated(partial(rm.solve, scene, LEVEL, ORDER), SECONDS, AT_MOST)
+    return {kind: Timing(found) for kind, found in seconds.items()}
+
+
+def measured_size(given: tuple[Kind, Timing], progress: Progress) -> Size:
+    """Solve so many elements once, and see what memory it takes; meant for a process of its own."""
+    del progress
+    kind, timing = given
+    rm.solve(cantilever(1, equal=True), LEVEL, ORDER)
+    solution = rm.solve(cantilever(*kind), LEVEL, ORDER)
     deflection = float(solution.displacement("bar", np.array([LENGTH]))[1, 0])
-    unknowns, outcome = solution.cost.unknowns, solution.outcome
-    del solution
-    resident = peak_memory()
-    timing = repeated(lambda: rm.solve(scene, LEVEL, ORDER), (first,), SECONDS, AT_LEAST, AT_MOST)
-    tracemalloc.start()
-    rm.solve(scene, LEVEL, ORDER)
-    _, allocated = tracemalloc.get_traced_memory()
-    tracemalloc.stop()
-    return Size(elements, unknowns, outcome, timing, allocated / 1e6, resident, deflection)
+    return Size(kind[0], solution.cost.unknowns, solution.outcome, peak_memory(), deflection, timing)
 
 
 def empty_process(given: None, progress: Progress) -> float:
@@ -163,7 +189,7 @@ def empty_process(given: None, progress: Progress) -> float:
 
 
 def apart(series: Sequence[Series]) -> float:
-    """Greatest relative difference of the end's deflection from that in the finest elements of its series' fit."""
+    """Greatest relative difference of the end's deflection, from `fitted_from` elements on, from the largest rod's."""
     return max(
         abs(size.deflection / found.sizes[-1].deflection - 1.0)
         for found in series

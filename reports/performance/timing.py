@@ -1,4 +1,4 @@
-"""Wall-clock seconds of repeated work: medians and quartiles, since single runs are noisy."""
+"""Seconds of repeated work: medians and quartiles, since single runs are noisy."""
 
 from __future__ import annotations
 
@@ -34,17 +34,20 @@ class Timing:
 
 
 def once(work: Callable[..., object], *given: object) -> float:
-    """Seconds of one run of work(*given)."""
+    """Wall-clock seconds of one run of work(*given)."""
     begin = time.perf_counter()
     work(*given)
     return time.perf_counter() - begin
 
 
-def repeated(
-    work: Callable[[], object], before: tuple[float, ...], seconds: float, at_least: int, at_most: int
-) -> Timing:
-    """Run again until so many seconds are spent, with those of runs before, but so often at least and at most."""
-    spent = list(before)
-    while len(spent) < at_least or (sum(spent) < seconds and len(spent) < at_most):
-        spent.append(once(work))
-    return Timing(tuple(spent))
+def repeated(work: Callable[[], object], seconds: float, at_most: int) -> tuple[float, ...]:
+    """Run once and again until so many processor seconds are spent, but so often at most; seconds of the runs.
+
+    Processor seconds, summed over threads, do not count the time in which the machine was busy with something else.
+    """
+    spent: list[float] = []
+    while not spent or (sum(spent) < seconds and len(spent) < at_most):
+        begin = time.process_time()
+        work()
+        spent.append(time.process_time() - begin)
+    return tuple(spent)

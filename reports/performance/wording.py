@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+import numpy as np
+
 from reports.comparison import Verdict
 from reports.performance.levels import LevelStudy, Setting
 from reports.performance.parts import Breakdown
-from reports.performance.scaling import Series, apart
+from reports.performance.scaling import PowerLaw, Series, apart
 from reports.performance.timing import Timing
 
 # Slopes aimed at: 1 within 10 %; and memory of the process that solves the largest rod, MB.
@@ -19,11 +21,18 @@ NEAR = 1e-3
 
 @dataclass(frozen=True)
 class Aim:
-    """Something aimed at and what was found; of slopes also that over all sizes, at which nothing is aimed."""
+    """Something aimed at and what was found.
+
+    Attributes
+    ----------
+    where : of slopes, from which number of elements on
+    over_all : of seconds, the slope over all sizes, for which nothing is aimed at
+    """
 
     what: str
     aim: str
     found: str
+    where: str
     over_all: str
     verdict: Verdict
 
@@ -84,59 +93,71 @@ def _kinds(values: list[tuple[Series, str]]) -> str:
 
 def aims(series: tuple[Series, ...]) -> list[Aim]:
     """What was aimed at of the cost against the number of elements, and what came of it."""
+    bounds = f"{1.0 - SLOPE_TOLERANCE:g} to {1.0 + SLOPE_TOLERANCE:g}"
     found = []
-    for what, unit in (("seconds", "seconds"), ("memory", "allocated")):
-        for one in series:
-            costs = getattr(one, unit)
-            slope, of_all = one.fit(costs).slope, one.fit_of_all(costs).slope
-            verdict: Verdict = "pass" if abs(slope - 1.0) <= SLOPE_TOLERANCE else "fail"
-            aim = f"{1.0 - SLOPE_TOLERANCE:g} to {1.0 + SLOPE_TOLERANCE:g}"
-            found.append(Aim(f"Slope of {what}, {kind(one)}", aim, f"{slope:.2f}", f"{of_all:.2f}", verdict))
+    for one in series:
+        law = one.time_law
+        of_all = f"{one.time_law_of_all.slope:.2f}"
+        found.append(Aim(f"Slope of seconds, {kind(one)}", bounds, _slope(law), _from(law), of_all, _linear(law)))
+    for one in series:
+        memory = one.memory_law
+        found.append(Aim(f"Slope of memory, {kind(one)}", bounds, _slope(memory), _from(memory), "", _linear(memory)))
     for one in series:
         largest = one.sizes[-1]
         met: Verdict = "pass" if largest.resident <= MOST_MEMORY and largest.outcome == "converged" else "fail"
         what = f"Memory of a process with {count(largest.elements)} elements, {kind(one)}"
-        found.append(Aim(what, "within 2 GB", f"{megabytes(largest.resident)} MB", "", met))
+        found.append(Aim(what, "within 2 GB", f"{megabytes(largest.resident)} MB", "", "", met))
     return found
+
+
+def _slope(law: PowerLaw | None) -> str:
+    return "too small to tell" if law is None else f"{law.slope:.2f}"
+
+
+def _from(law: PowerLaw | None) -> str:
+    return "" if law is None else f"from {count(round(law.start))} on"
+
+
+def _linear(law: PowerLaw | None) -> Verdict:
+    """Whether a slope is near enough to 1."""
+    if law is None:
+        return "not resolved"
+    return "pass" if abs(law.slope - 1.0) <= SLOPE_TOLERANCE else "fail"
 
 
 def seconds_caption(series: tuple[Series, ...]) -> str:
     """What the figure of seconds shows."""
-    largest = series[0].sizes[-1]
-    slopes = _kinds([(one, f"{one.fit(one.seconds).slope:.2f}") for one in series])
-    of_all = _kinds([(one, f"{one.fit_of_all(one.seconds).slope:.2f}") for one in series])
+    smallest, largest = series[0].sizes[0], series[0].sizes[-1]
+    slopes = _kinds([(one, _slope(one.time_law)) for one in series])
+    of_all = _kinds([(one, _slope(one.time_law_of_all)) for one in series])
     return (
-        f"Aim: slope 1 within {percent(SLOPE_TOLERANCE)}; found {slopes} from {series[0].fitted_from} elements on, and "
-        f"{of_all} over all sizes, where what a solve costs whatever its size weighs: "
-        f"{duration(series[0].sizes[0].timing.median)} for {series[0].sizes[0].elements} elements, "
-        f"{duration(largest.timing.median)} for {count(largest.elements)}."
+        f"Aim: slope 1 within {percent(SLOPE_TOLERANCE)}; found {slopes} {_from(series[0].time_law)}, and {of_all} "
+        f"over all sizes, where what a solve costs whatever its size weighs: {duration(smallest.timing.median)} for "
+        f"{smallest.elements} elements, {duration(largest.timing.median)} for {count(largest.elements)}."
     )
 
 
 def memory_caption(series: tuple[Series, ...]) -> str:
     """What the figure of memory shows."""
-    slopes = _kinds([(one, f"{one.fit(one.allocated).slope:.2f}") for one in series])
+    laws = [(one, one.memory_law) for one in series]
+    slopes = _kinds([(one, f"{_slope(law)} {_from(law)}".strip()) for one, law in laws])
     grown = _kinds([(one, f"{megabytes(one.growth[-1])} MB") for one in series])
     return (
-        f"Aim: slope 1 within {percent(SLOPE_TOLERANCE)}; found {slopes} from {series[0].fitted_from} elements on; "
-        f"{count(series[0].sizes[-1].elements)} elements make the process grow by {grown}, above the "
-        f"{megabytes(series[0].empty)} MB of one that solved a single element."
+        f"Aim: slope 1 within {percent(SLOPE_TOLERANCE)}; found {slopes}: {count(series[0].sizes[-1].elements)} "
+        f"elements make the process grow by {grown}, above the {megabytes(series[0].empty)} MB of one that solved a "
+        "single element."
     )
 
 
 def relative_caption(series: tuple[Series, ...]) -> str:
     """What the figure of the cost relative to linear shows."""
-    times, memories = ([(one, one.relative(getattr(one, unit))) for one in series] for unit in ("seconds", "allocated"))
-    from_on = [
-        float(value)
-        for one, ratios in times + memories
-        for size, value in zip(one.sizes, ratios, strict=True)
-        if size.elements >= one.fitted_from
-    ]
+    times = [(one, one.relative(one.seconds)) for one in series]
+    large = np.concatenate([ratios[one.elements >= one.fitted_from] for one, ratios in times])
     small = " or ".join(f"{ratios[0]:.2g}" for _, ratios in times)
     return (
-        f"Were cost proportional to the number of elements, all points would be at 1: from {series[0].fitted_from} "
-        f"elements on they lie between {min(from_on):.2f} and {max(from_on):.2f}, and at {series[0].sizes[0].elements} "
+        f"Were cost proportional to the number of elements, all points would be at 1: those of seconds from "
+        f"{series[0].fitted_from} elements on lie between {large.min():.2f} and {large.max():.2f}, and at "
+        f"{series[0].sizes[0].elements} "
         f"elements an element takes {small} times as long as in the largest rod."
     )
 
@@ -150,7 +171,10 @@ def sizes_note(series: tuple[Series, ...]) -> str:
         "and more."
     )
     outcome = f" {len(failed)} of the solves did not converge." if failed else ""
-    return f"Seconds are medians of {min(runs)} to {max(runs)} runs, with their quartiles. {agree}{outcome}"
+    return (
+        f"Seconds are processor seconds, medians of {min(runs)} to {max(runs)} runs with their quartiles: they do not "
+        f"count the time in which the machine was busy with something else. {agree}{outcome}"
+    )
 
 
 def parts_note(breakdown: Breakdown) -> str:
@@ -196,6 +220,8 @@ def levels_note(study: LevelStudy) -> str:
 
 def summary(series: tuple[Series, ...], breakdown: Breakdown, study: LevelStudy) -> list[str]:
     """What `rodcheck performance` prints."""
-    found = [f"{aim.what}: {aim.found} (aim {aim.aim}), {aim.verdict}" for aim in aims(series)]
+    found = [
+        " ".join(f"{aim.what}: {aim.found} {aim.where} (aim {aim.aim}), {aim.verdict}".split()) for aim in aims(series)
+    ]
     whole = f"{breakdown.case}, h{breakdown.level}, p = {breakdown.order}: {duration(breakdown.whole.median)}."
     return [*found, f"{whole} {parts_note(breakdown)}", levels_caption(study)]
