@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from cases.scene import Clamp, ContactPair, Helix, Rod, Vector
+from cases.scene import CentreLine, Clamp, ContactPair, Helix, Line, Path, Rod, Spline, Vector
 from reports.applied_forces import AppliedForces, applied_forces, reactions
 from reports.contact_edges import contact_stretches, edge_resolution
 from reports.equilibrium import equilibrium_residual, equilibrium_resultants
@@ -97,7 +97,7 @@ DEFINITIONS: Mapping[str, Definition] = {
     ),
     "stress_s": Definition("Stress along the rod", "MPa", "sigma_s at a stated point (x, y, s) of a rod."),
     "strain_energy": Definition(
-        "Strain energy", "N mm", "Elastic energy of all rods, without that of the contact penalty."
+        "Strain energy", "N mm", "Elastic energy of all rods, without that of the contact penalty and of beds."
     ),
     "equilibrium_residual": Definition(
         "Equilibrium residual",
@@ -293,19 +293,31 @@ def _require_finite(quantities: Quantities) -> None:
 
 
 def default_stations(rod: Rod) -> Array:
-    """60 even steps (48 a turn of a helix of many), both ends, and the element borders, mm, ascending."""
+    """60 even steps (more on long helices and splines), both ends, and the element borders, mm, ascending."""
     return merged_stations(rod, np.empty(0))
 
 
 def merged_stations(rod: Rod, extra: Array) -> Array:
     """`default_stations` and further ones, those closer than 1e-9 of the length merged."""
-    turns = rod.centre_line.angle / (2.0 * math.pi) if isinstance(rod.centre_line, Helix) else 0.0
-    even = np.linspace(0.0, rod.length, 1 + max(60, math.ceil(48.0 * turns)))
+    even = np.linspace(0.0, rod.length, 1 + max(60, _steps(rod.centre_line)))
     station = np.sort(np.concatenate([even, rod.element_borders, extra]))
     station = np.clip(station, 0.0, rod.length)
     keep = np.concatenate([[True], np.diff(station) > 1e-9 * rod.length])
     merged: Array = station[keep]
     return merged
+
+
+def _steps(line: CentreLine) -> int:
+    """How many even steps show the shape of a line: 48 a turn of a helix, 12 between two points of a spline."""
+    match line:
+        case Path():
+            return sum(_steps(piece) for piece in line.pieces)
+        case Helix():
+            return math.ceil(48.0 * line.angle / (2.0 * math.pi))
+        case Spline():
+            return 12 * (len(line.points) - 1)
+        case Line():
+            return 0
 
 
 def contact_quantities(solution: Solution, pair: ContactPair) -> ContactQuantities:

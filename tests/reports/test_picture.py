@@ -1,4 +1,4 @@
-"""The geometry of the 3D picture, without drawing it."""
+"""The geometry of the 3D picture; a scene with everything in it is drawn once."""
 
 from __future__ import annotations
 
@@ -7,9 +7,26 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from cases.scene import Scene
-from reports.picture import deformed_surface, drawn_shifts, magnification, round_below
+from cases.scene import (
+    Bed,
+    Clamp,
+    Gravity,
+    Joint,
+    Line,
+    Material,
+    Pressure,
+    Rectangle,
+    Rod,
+    RodEnd,
+    RodFace,
+    Scene,
+    Support,
+)
+from reports.picture import deformed_surface, draw, drawn_shifts, magnification, round_below
+from reports.processes import ProcessFailed, Progress, in_own_process
+from reports.quantities import evaluate
 from reports.runner import CaseRun
+from rodmodel import solve
 
 
 @pytest.mark.parametrize(("value", "rounded"), [(1.0, 1.0), (1.99, 1.0), (2.0, 2.0), (37.0, 20.0), (500.0, 500.0)])
@@ -52,3 +69,54 @@ def test_gaps_are_magnified_like_displacements(beam_scene: Scene, case_run: Case
 
     assert shifts["lower"] == pytest.approx([0.0, 0.0, 0.0])
     assert shifts["upper"] == pytest.approx([0.0, 5.0, 0.0])
+
+
+def test_rods_stay_with_those_they_are_joined_to(beam_scene: Scene, case_run: CaseRun) -> None:
+    post = replace(
+        beam_scene.rod("upper"),
+        name="post",
+        centre_line=Line((200.0, 15.0, 0.0), (200.0, 215.0, 0.0), (1.0, 0.0, 0.0)),
+        element_borders=(0.0, 200.0),
+    )
+    joint = Joint((RodEnd("post", "start"), RodEnd("upper", "start")))
+    pair = replace(beam_scene.contacts[0], gap=0.5)
+    scene = replace(beam_scene, rods=(*beam_scene.rods, post), contacts=(pair,), joints=(joint,))
+
+    shifts = drawn_shifts(scene, case_run.rod.quantities, factor=10.0)
+
+    assert shifts["lower"] == pytest.approx([0.0, 0.0, 0.0])
+    assert shifts["post"] == pytest.approx(shifts["upper"])
+    assert shifts["upper"] == pytest.approx([0.0, 5.0, 0.0])
+
+
+def _drawn(scene: Scene, progress: Progress) -> bytes:
+    return draw(scene, evaluate(solve(scene, 1, 3))).png
+
+
+@pytest.mark.slow
+def test_all_that_holds_and_loads_rods_can_be_drawn() -> None:
+    steel = Material(200_000.0, 0.3, 7.85e-9)
+    beam = Rod("beam", Line((0, 0, 0), (400, 0, 0), (0, 1, 0)), Rectangle(10.0, 20.0), steel, (0.0, 400.0))
+    post = Rod("post", Line((400, 0, 0), (400, -200, 0), (1, 0, 0)), Rectangle(10.0, 20.0), steel, (0.0, 200.0))
+    scene = Scene(
+        "all",
+        (beam, post),
+        (
+            Support("beam", 0.0, ("x", "y", "turn s"), of="mean"),
+            Support("beam", 200.0, ("s",), of="mean", displacement=(0.1,)),
+            Clamp("post", "end", (0.0, 0.1, 0.0)),
+        ),
+        (Pressure(RodFace("beam", "top"), 0.0, 400.0, 0.1), Gravity("post", (0.0, -9810.0, 0.0))),
+        (),
+        joints=(Joint((RodEnd("beam", "end"), RodEnd("post", "start"))),),
+        beds=(Bed(RodFace("beam", "bottom"), 50.0, 350.0, 0.1),),
+    )
+
+    try:
+        png = in_own_process(_drawn, scene)
+    except ProcessFailed as error:
+        if "exit code" not in str(error):
+            raise
+        pytest.skip("VTK found no way to draw here and ended its process")
+
+    assert png.startswith(b"\x89PNG")
