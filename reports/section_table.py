@@ -30,12 +30,12 @@ class SectionTable:
     Attributes
     ----------
     columns : the section in words, and the rods that have it
-    rows : what, its unit, and a value for each section
+    rows : what and its unit, and a value for each section
     note : how far the torsion constants can be trusted
     """
 
     columns: tuple[tuple[str, str], ...]
-    rows: tuple[tuple[str, str, tuple[str, ...]], ...]
+    rows: tuple[tuple[str, tuple[str, ...]], ...]
     note: str
 
 
@@ -48,14 +48,14 @@ def section_table(rods: Sequence[Rod]) -> SectionTable:
     found = [_properties(section) for section in sections]
     properties = [item.properties for item in found]
     rows = [
-        ("Area A", "mm²", [number(p.area) for p in properties]),
-        ("Second moment " + _X, "mm⁴", [number(p.second_moment_x) for p in properties]),
-        ("Second moment " + _Y, "mm⁴", [number(p.second_moment_y) for p in properties]),
-        ("Principal moments I₁, I₂", "mm⁴", [_pair(*p.principal_moments) for p in properties]),
-        ("Angle from x to axis 1", "degrees", [number(math.degrees(p.principal_angle), 5) for p in properties]),
-        ("Section moduli W₁, W₂", "mm³", [_pair(*p.section_moduli) for p in properties]),
-        ("Torsion constant J", "mm⁴", [number(p.torsion_constant) for p in properties]),
-        ("Shear centre x, y", "mm", [_shear_centre(p) for p in properties]),
+        ("Area A, mm²", [_digits(p.area) for p in properties]),
+        ("Second moment " + _X + ", mm⁴", [_digits(p.second_moment_x) for p in properties]),
+        ("Second moment " + _Y + ", mm⁴", [_digits(p.second_moment_y) for p in properties]),
+        ("Principal moments I₁, I₂, mm⁴", [_pair(*p.principal_moments) for p in properties]),
+        ("Angle from x to axis 1, degrees", [_digits(math.degrees(p.principal_angle)) for p in properties]),
+        ("Section moduli W₁, W₂, mm³", [_pair(*p.section_moduli) for p in properties]),
+        ("Torsion constant J, mm⁴", [_digits(p.torsion_constant) for p in properties]),
+        ("Shear centre x, y, mm", [_shear_centre(p) for p in properties]),
     ]
     degrees = sorted({item.degree for item in found})
     fall = max(item.fall for item in found)
@@ -64,7 +64,7 @@ def section_table(rods: Sequence[Rod]) -> SectionTable:
         "About the centroid; axis 1 is that of the largest second moment. J is an upper bound, from warping functions "
         f"of degree {' or '.join(str(degree) for degree in degrees)}: the last two degrees took {settled} off it."
     )
-    return SectionTable(tuple(columns), tuple((what, unit, tuple(cells)) for what, unit, cells in rows), note)
+    return SectionTable(tuple(columns), tuple((what, tuple(cells)) for what, cells in rows), note)
 
 
 @dataclass(frozen=True)
@@ -98,7 +98,13 @@ def _properties(section: Section) -> _Found:
 
 
 def _pair(first: float, second: float) -> str:
-    return f"{number(first)}, {number(second)}"
+    return f"{_digits(first)}, {_digits(second)}"
+
+
+def _digits(value: float) -> str:
+    """Six digits without zeros at their end."""
+    text = number(value)
+    return text.rstrip("0").rstrip(".") if "." in text and "e" not in text else text
 
 
 def _shear_centre(properties: SectionProperties) -> str:

@@ -20,7 +20,7 @@ def rods_with(*sections: Section) -> list[Rod]:
 
 def values(table: SectionTable, start: str) -> list[list[float]]:
     """The numbers in the row whose name starts so, section by section."""
-    cells = next(cells for what, _, cells in table.rows if str(what).startswith(start))
+    cells = next(cells for what, cells in table.rows if str(what).startswith(start))
     return [[float(part.replace("−", "-")) for part in cell.split(",")] for cell in cells]
 
 
@@ -28,7 +28,7 @@ def test_each_section_has_one_column_with_the_rods_that_have_it() -> None:
     table = section_table(rods_with(Rectangle(20.0, 10.0), Circle(10.0), Rectangle(20.0, 10.0)))
 
     assert table.columns == (("20 x 10 mm", "rod 1, rod 3"), ("diameter 10 mm", "rod 2"))
-    assert all(len(cells) == 2 for _, _, cells in table.rows)
+    assert all(len(cells) == 2 for _, cells in table.rows)
 
 
 def test_a_rectangle_and_a_circle_have_the_properties_of_the_textbook() -> None:
@@ -42,7 +42,7 @@ def test_a_rectangle_and_a_circle_have_the_properties_of_the_textbook() -> None:
     torsion = values(table, "Torsion")
     assert torsion[0] == [pytest.approx(0.229 * 20.0 * 10.0**3, rel=2e-3)]  # three digits in Timoshenko and Goodier
     assert torsion[1] == [pytest.approx(math.pi * 10.0**4 / 32.0, rel=digits)]
-    assert next(cells for what, _, cells in table.rows if what == "Shear centre x, y") == ("centroid", "centroid")
+    assert next(cells for what, cells in table.rows if what.startswith("Shear centre")) == ("centroid", "centroid")
 
 
 def test_an_angle_has_its_shear_centre_near_the_corner_and_a_torsion_constant_said_to_be_unsettled() -> None:
