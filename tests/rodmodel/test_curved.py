@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Callable
 
 import numpy as np
 import pytest
 
 import rodmodel as rm
 from cases.loader import TRUTH
+from cases.scene import CentreLine
 from rodmodel.section import Fields, section_stiffness
 from rodmodel.stiffness import stiffness_terms
 
@@ -83,6 +85,71 @@ def test_quarter_ring_follows_castigliano() -> None:
     # The force points along the radius at the free end (0, R): its arm about the section at theta is R cos(theta).
     expected = 1.0 * radius**3 * np.pi / 4.0 / (STEEL.young_modulus * side**4 / 12.0)
     assert end_mean(solution, "ring")[1] == pytest.approx(expected, rel=1e-3)
+
+
+def ellipse(parameter: np.ndarray) -> np.ndarray:
+    return np.array([120.0 * np.cos(parameter), 60.0 * np.sin(parameter), 0.0 * parameter])
+
+
+def coil(parameter: np.ndarray) -> np.ndarray:
+    """It widens as it rises."""
+    radius = 40.0 + 8.0 * parameter
+    return np.array([radius * np.cos(parameter), radius * np.sin(parameter), 12.0 * parameter])
+
+
+def hook(parameter: np.ndarray) -> np.ndarray:
+    """Straight for 80 mm, a quarter of a circle of radius 50 mm, straight for 60 mm, by arc length."""
+    turn = np.clip((parameter - 80.0) / 50.0, 0.0, np.pi / 2)
+    before, after = np.minimum(parameter - 80.0, 0.0), np.maximum(parameter - 80.0 - 25.0 * np.pi, 0.0)
+    return np.array([50.0 * np.cos(turn) - after, before + 50.0 * np.sin(turn), 0.0 * parameter])
+
+
+def spline_through(curve: Callable[[np.ndarray], np.ndarray], end: float, count: int) -> rm.Spline:
+    points = curve(np.linspace(0.0, end, count)).T.tolist()
+    return rm.Spline(tuple((x, y, z) for x, y, z in points), (0.0, 0.0, 1.0))
+
+
+HOOK = rm.Path(
+    (
+        rm.Line((50.0, -80.0, 0.0), (50.0, 0.0, 0.0), (0.0, 0.0, 1.0)),
+        rm.Helix((50.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, 1.0), np.pi / 2, (0.0, 0.0, 1.0)),
+        rm.Line((0.0, 50.0, 0.0), (-60.0, 50.0, 0.0), (0.0, 0.0, 1.0)),
+    )
+)
+
+
+@pytest.mark.parametrize(
+    ("line", "curve", "end"),
+    [
+        pytest.param(spline_through(ellipse, np.pi / 2, 33), ellipse, np.pi / 2, id="spline along an ellipse"),
+        pytest.param(spline_through(coil, 5.0, 65), coil, 5.0, id="spline along a widening coil"),
+        pytest.param(HOOK, hook, 80.0 + 25.0 * np.pi + 60.0, id="path"),
+    ],
+)
+def test_slender_rods_of_any_shape_follow_castigliano(
+    line: CentreLine, curve: Callable[[np.ndarray], np.ndarray], end: float
+) -> None:
+    """Flexibility under an end force: int Mb^2 / (E I) + T^2 / (G J) + N^2 / (E A) + Q^2 / (k G A) ds along the curve.
+
+    Round section of diameter 2, k = 6 (1 + nu) / (7 + 6 nu). Curvature adds terms of (r / R)^2, (1 / 30)^2 where the
+    ellipse is tightest; the clamp stiffens by about nu r in a length of 145 and more.
+    """
+    force, radius = np.array([1.0, 2.0, -3.0]), 1.0
+    points = curve(np.linspace(0.0, end, 40001))
+    middle, step = 0.5 * (points[:, 1:] + points[:, :-1]), np.diff(points)
+    length = np.linalg.norm(step, axis=0)
+    tangent = step / length
+    moment = np.cross(points[:, -1:] - middle, force, axisa=0, axisc=0)
+    torque, normal = (moment * tangent).sum(axis=0), force @ tangent
+    area, second, young = np.pi * radius**2, np.pi * radius**4 / 4.0, STEEL.young_modulus
+    shear, factor = young / 2.6, 6.0 * 1.3 / (7.0 + 6.0 * 0.3)
+    density = ((moment**2).sum(axis=0) - torque**2) / (young * second) + torque**2 / (shear * 2.0 * second)
+    density += normal**2 / (young * area) + (force @ force - normal**2) / (factor * shear * area)
+    expected = density @ length
+    rod = rm.Rod("rod", line, rm.Circle(2.0 * radius), STEEL, graded_borders(line.length, 12, (0.5, 2.0)))
+    load = rm.SectionForce("rod", line.length, (1.0, 2.0, -3.0))
+    solution = rm.solve(rm.Scene("slender", (rod,), (rm.Clamp("rod", "start"),), (load,), ()), level=3, order=7)
+    assert end_mean(solution, "rod") @ force == pytest.approx(expected, rel=1e-3)
 
 
 def test_which_side_is_up_does_not_matter() -> None:

@@ -3,10 +3,27 @@
 import numpy as np
 import pytest
 
-from cases.scene import Material, Rectangle
+from cases.scene import Circle, Material, Orthotropic, Rectangle
 from rodmodel.axial import axial_matrices
-from rodmodel.section import STRAIGHT, Fields, SectionStiffness, U, V, W, section_stiffness
-from rodmodel.stiffness import condensed_element, element_family, stiffness_terms
+from rodmodel.section import (
+    STRAIGHT,
+    Fields,
+    SectionStiffness,
+    U,
+    V,
+    W,
+    elasticity_matrix,
+    product_quadrature,
+    section_stiffness,
+    strain_operators,
+)
+from rodmodel.stiffness import (
+    axial_quadrature,
+    condensed_element,
+    element_family,
+    stiffness_terms,
+    varying_element,
+)
 
 SECTION = Rectangle(15.0, 10.0)
 MATERIAL = Material(1.0, 0.3)
@@ -15,6 +32,53 @@ LENGTH = 40.0
 
 def element_stiffness(length: float, order: int, section: SectionStiffness) -> np.ndarray:
     return np.tensordot([0.5 * length, 1.0, 2.0 / length], stiffness_terms(order, section), axes=1)
+
+
+@pytest.mark.parametrize("turning", [STRAIGHT, (0.01, -0.02, 0.03)])
+@pytest.mark.parametrize("fields", [Fields(1), Fields(3), Fields(4, mirror_x=True), Fields(4, mirror_y=True)])
+@pytest.mark.parametrize("material", [MATERIAL, Orthotropic((30.0, 20.0, 50.0), (4.0, 5.0, 6.0), (0.2, 0.1, 0.15))])
+def test_section_stiffness_is_the_energy_of_the_strains(material, fields, turning) -> None:
+    """Assembled from shared products of functions; here from strains at points, as they are defined."""
+    x, y, weight = product_quadrature(SECTION, fields.level, turning)
+    b0, b1, stretch = strain_operators(SECTION, fields, x, y, turning)
+    law = elasticity_matrix(material, fields.level)
+    found = section_stiffness(SECTION, material, fields, turning)
+    for matrix, first, second in ((found.s00, b0, b0), (found.s01, b0, b1), (found.s11, b1, b1)):
+        expected = np.einsum("pri,rs,psj,p->ij", first, law, second, weight * stretch, optimize=True)
+        np.testing.assert_allclose(matrix, expected, atol=1e-13 * np.abs(found.s11).max())
+
+
+def test_section_stiffness_at_many_stations_is_that_at_each() -> None:
+    turning = np.array([[0.01, 0.0, -0.02], [0.03, 0.0, 0.01], [0.0, 0.0, 0.05]])
+    together = section_stiffness(Circle(9.0), MATERIAL, Fields(2), turning)
+    for index, rates in enumerate(turning.T):
+        alone = section_stiffness(Circle(9.0), MATERIAL, Fields(2), tuple(rates))
+        for many, one in ((together.s00, alone.s00), (together.s01, alone.s01), (together.s11, alone.s11)):
+            # a straight station among curved ones has more points than it needs
+            np.testing.assert_allclose(many[index], one, atol=1e-12 * np.abs(one).max())
+
+
+def test_quadrature_between_knots_is_as_exact_as_without() -> None:
+    order, left, right = 5, 10.0, 30.0
+    xi, weight = axial_quadrature(order, left, right, np.array([-5.0, 12.0, 25.0, 40.0]))
+    # Smooth between knots at xi = -0.8 and 0.5 only.
+    kinked = np.abs(xi + 0.8) + np.maximum(xi - 0.5, 0.0)
+    assert weight @ kinked == pytest.approx(0.5 * (0.2**2 + 1.8**2) + 0.5 * 0.5**2, rel=1e-14)
+    degrees = np.arange(2 * order + 1)
+    exact = np.where(degrees % 2 == 0, 2.0 / (degrees + 1), 0.0)
+    np.testing.assert_allclose(xi ** degrees[:, None] @ weight, exact, atol=1e-14)
+
+
+def test_element_of_constant_turning_is_that_without_quadrature() -> None:
+    turning, order, fields = (0.01, -0.02, 0.03), 4, Fields(3)
+    quadrature = axial_quadrature(order, 0.0, LENGTH, np.array([15.0]))
+    rates = np.repeat(np.array(turning)[:, None], len(quadrature[0]), axis=1)
+    varying = varying_element(order, fields, LENGTH, quadrature, section_stiffness(SECTION, MATERIAL, fields, rates))
+    section = section_stiffness(SECTION, MATERIAL, fields, turning)
+    expected = condensed_element(element_family(order, fields, section, reversible=False), LENGTH)
+    scale = np.abs(expected.condensed).max()
+    np.testing.assert_allclose(varying.condensed, expected.condensed, atol=1e-12 * scale)
+    np.testing.assert_allclose(varying.half_coupling, expected.half_coupling, atol=1e-12 * np.sqrt(scale))
 
 
 def test_element_is_the_kronecker_sum() -> None:
