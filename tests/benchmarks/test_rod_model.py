@@ -11,17 +11,16 @@ from scipy.sparse.linalg import splu
 import rodmodel as rm
 from cases.loader import load_case
 from cases.scene import Scene
-from reports.case_comparison import evaluation_points
-from reports.quantities import evaluate
-from rodmodel.assembly import ElementStore, compliance, functionals, point_parts
+from reports.performance.parts import TEXTS, Part, parts
+from reports.performance.scaling import cantilever
+from rodmodel.assembly import ElementStore, point_parts
 from rodmodel.axial import shape_functions
 from rodmodel.borders import natural_mesh
 from rodmodel.centre_line import darboux
-from rodmodel.chain import Chain
 from rodmodel.contact import unilateral_contact
 from rodmodel.pairing import facing_points
-from rodmodel.section import STRAIGHT, Fields, section_stiffness
-from rodmodel.stiffness import condensed_element, element_family, stiffness_terms
+from rodmodel.section import Fields, section_stiffness
+from rodmodel.stiffness import stiffness_terms
 from rodmodel.symmetry import scene_mirrors
 from rodmodel.system import ContactSystem, contact_system, inward_directions
 
@@ -34,46 +33,21 @@ def scene() -> Scene:
 
 
 @pytest.fixture(scope="module")
+def measured_parts() -> dict[str, Part]:
+    return parts()
+
+
+@pytest.fixture(scope="module")
 def system(scene: Scene) -> ContactSystem:
     meshes = {rod.name: natural_mesh(scene, rod, LEVEL, ORDER) for rod in scene.rods}
     return contact_system(scene, scene_mirrors(scene), meshes, ElementStore())
 
 
 @pytest.mark.benchmark(group="where the time goes: parts of one solve of the paper's case, h5, p = 6")
-class TestParts:
-    def test_section_matrices(self, benchmark: BenchmarkFixture, scene: Scene) -> None:
-        rod = scene.rods[0]
-        fields = Fields(LEVEL, mirror_x=True)
-        benchmark(
-            lambda: element_family(ORDER, fields, section_stiffness(rod.section, rod.material, fields, STRAIGHT), True)
-        )
-
-    def test_one_element(self, benchmark: BenchmarkFixture, scene: Scene) -> None:
-        rod = scene.rods[0]
-        fields = Fields(LEVEL, mirror_x=True)
-        family = element_family(ORDER, fields, section_stiffness(rod.section, rod.material, fields, STRAIGHT), True)
-        benchmark(condensed_element, family, 33.33)
-
-    def test_one_chain(self, benchmark: BenchmarkFixture, system: ContactSystem) -> None:
-        elements = system.rods["lower"].elements
-        benchmark(lambda: Chain(elements, 200e3, {0: np.empty(0, dtype=np.int64)}))
-
-    def test_contact_points_of_one_rod(self, benchmark: BenchmarkFixture, system: ContactSystem) -> None:
-        rod, grid = system.rods["lower"], system.grids["overlap"]
-        station, _ = grid.flat()
-        directions = np.ones((Fields(LEVEL, mirror_x=True).count, len(station)))
-        benchmark(lambda: compliance(functionals(rod, point_parts(rod, station, lambda _: directions), len(station))))
-
-    def test_unilateral_contact(self, benchmark: BenchmarkFixture, system: ContactSystem) -> None:
-        benchmark(unilateral_contact, system.compliance, system.initial_gap, system.spring)
-
-    def test_quantities(self, benchmark: BenchmarkFixture, scene: Scene) -> None:
-        solution = rm.solve(scene, LEVEL, ORDER)
-        points = evaluation_points(load_case("two-cantilevers-e50-g0"))
-        benchmark(evaluate, solution, points.stations, points.stress_points)
-
-    def test_whole_solve(self, benchmark: BenchmarkFixture, scene: Scene) -> None:
-        benchmark(rm.solve, scene, LEVEL, ORDER)
+@pytest.mark.parametrize("name", TEXTS)
+def test_part(benchmark: BenchmarkFixture, measured_parts: dict[str, Part], name: str) -> None:
+    part = measured_parts[name]
+    benchmark.pedantic(part.work, setup=lambda: ((part.prepare(),), {}), rounds=15, warmup_rounds=1)
 
 
 class PlainSparse:
@@ -174,15 +148,5 @@ class TestAgainstPlainSparse:
 @pytest.mark.benchmark(group="cost against number of elements, h2, p = 4")
 @pytest.mark.parametrize("elements", [10, 100, 1000, 10_000])
 def test_cost_is_linear(benchmark: BenchmarkFixture, elements: int) -> None:
-    length = 10.0 * elements
-    rod = rm.Rod(
-        "bar",
-        rm.Line((0.0, 0.0, 0.0), (length, 0.0, 0.0), (0.0, 1.0, 0.0)),
-        rm.Rectangle(15.0, 15.0),
-        rm.Material(200e3, 0.3),
-        tuple(np.linspace(0.0, length, elements + 1)),
-    )
-    load = rm.SectionForce("bar", length, (0.0, -1.0, 0.0))
-    scene = rm.Scene("bar", (rod,), (rm.Clamp("bar", "start"),), (load,), ())
-    solution = benchmark.pedantic(rm.solve, args=(scene, 2, 4), rounds=3, warmup_rounds=1)
+    solution = benchmark.pedantic(rm.solve, args=(cantilever(elements, equal=True), 2, 4), rounds=3, warmup_rounds=1)
     benchmark.extra_info["unknowns"] = solution.cost.unknowns
