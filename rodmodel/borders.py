@@ -157,11 +157,53 @@ def placed_meshes(
     placed = {}
     for rod in scene.rods:
         borders = plan[rod.name]
-        stations = _edge_stations(scene, rod, edges, positions)
-        places = [
+        # An edge that has crossed a held border has changed places with it.
+        places = np.sort(_places(borders, _edge_stations(scene, rod, edges, positions)))
+        placed[rod.name] = stretched(borders.base, borders.anchors, places)
+    return placed
+
+
+def _places(borders: RodBorders, stations: Mapping[int, float]) -> Array:
+    """Where the anchors go, in their own order, mm."""
+    return np.array(
+        [
             borders.base.borders[anchor] if edge < 0 else stations[edge]
             for anchor, edge in zip(borders.anchors, borders.edges, strict=True)
         ]
-        # An edge that has crossed a held border has changed places with it.
-        placed[rod.name] = stretched(borders.base, borders.anchors, np.sort(places))
-    return placed
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class Rates:
+    """How fast every station of a rod moves with the edges; linear in between held ones and edges.
+
+    Attributes
+    ----------
+    places : where the rod's anchors are, ascending, mm, shape (n_anchors,)
+    of_anchors : how far each moves with every edge, mm/mm, shape (n_edges, n_anchors)
+    """
+
+    places: Array
+    of_anchors: Array
+
+    def at(self, station: Array) -> Array:
+        """Rates of stations, mm/mm, shape (n_edges, n)."""
+        return np.array([np.interp(station, self.places, each) for each in self.of_anchors])
+
+
+def edge_rates(
+    scene: Scene, plan: Mapping[str, RodBorders], edges: Sequence[Edge], positions: Array
+) -> dict[str, Rates]:
+    """By rod name, how the borders of `placed_meshes` move with the edges."""
+    rates = {}
+    for rod in scene.rods:
+        borders = plan[rod.name]
+        stations, ahead = (_edge_stations(scene, rod, edges, at) for at in (positions, positions + 1.0))
+        places = _places(borders, stations)
+        of_anchors = np.zeros((len(edges), len(places)))
+        for index, edge in enumerate(borders.edges):
+            if edge >= 0:
+                of_anchors[edge, index] = ahead[edge] - stations[edge]
+        order = np.argsort(places, kind="stable")
+        rates[rod.name] = Rates(places[order], of_anchors[:, order])
+    return rates

@@ -21,7 +21,7 @@ def forces_on(active: BoolArray, compliance: Array, gap: Array, spring: Array) -
     ----------
     active : shape (n,)
     compliance : C, mm/N, shape (n, n)
-    gap : d_0, gap without contact forces, mm, shape (n,)
+    gap : d_0, gap without contact forces, mm, shape (n,), or several side by side, shape (n, m)
     spring : c_n w, penalty times share of the face, N/mm, shape (n,)
     """
     force = np.zeros_like(gap)

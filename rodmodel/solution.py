@@ -14,7 +14,6 @@ from rodmodel.assembly import AssembledRod
 from rodmodel.axial import shape_function_slopes, shape_functions
 from rodmodel.beds import BedForces, bed_forces
 from rodmodel.centre_line import by_turning, centre_points, frames, global_points, turning_at
-from rodmodel.edges import Stretch
 from rodmodel.mesh import SAME_BORDER
 from rodmodel.pairing import face_axes, facing_points
 from rodmodel.profile import ContactProfile, pressure_profile
@@ -31,6 +30,7 @@ from rodmodel.section import (
     section_values,
     strain_operators,
 )
+from rodmodel.stretches import Stretch
 from rodmodel.system import ContactSystem, RodState
 
 Array = NDArray[np.float64]

@@ -11,12 +11,13 @@ from numpy.typing import NDArray
 
 from cases.scene import Rod, Scene
 from rodmodel.assembly import ElementStore, stored_energy
-from rodmodel.borders import Edge, border_plan, natural_mesh, placed_meshes
+from rodmodel.borders import Edge, Rates, border_plan, edge_rates, natural_mesh, placed_meshes
 from rodmodel.contact import unilateral_contact
-from rodmodel.edges import EdgeSearch, Stretch, find_edges, moved, moving_edges, same_topology, stretches_in_contact
+from rodmodel.edges import EdgeSearch, find_edges
 from rodmodel.loose import require_held
 from rodmodel.mesh import RodMesh
 from rodmodel.solution import Cost, Solution
+from rodmodel.stretches import Stretch, moved, moving_edges, same_topology, stretches_in_contact
 from rodmodel.symmetry import scene_mirrors
 from rodmodel.system import ContactSystem, contact_system
 
@@ -24,8 +25,8 @@ Array = NDArray[np.float64]
 
 # A level or an order: the same everywhere, or by rod name one for each element.
 Grades = int | Mapping[str, Sequence[int]]
-# Makes the contact system on given meshes, with points in all zones or in parts of them.
-SystemOn = Callable[[dict[str, RodMesh], dict[str, Array] | None], ContactSystem]
+# Makes the contact system on given meshes.
+SystemOn = Callable[[dict[str, RodMesh]], ContactSystem]
 
 # Energy in the contact springs, as a part of the strain energy, above which the penalty falsifies the answer.
 PENALTY_SHARE = 1e-3
@@ -53,8 +54,8 @@ def solve(scene: Scene, level: Grades = 5, order: Grades = 6) -> Solution:
     require_held(scene, mirrors)
     store = ElementStore()
 
-    def system_on(meshes: dict[str, RodMesh], within: dict[str, Array] | None = None) -> ContactSystem:
-        return contact_system(scene, mirrors, meshes, store, within)
+    def system_on(meshes: dict[str, RodMesh]) -> ContactSystem:
+        return contact_system(scene, mirrors, meshes, store)
 
     natural = {rod.name: natural_mesh(scene, rod, _grades_of(level, rod), _grades_of(order, rod)) for rod in scene.rods}
     system = system_on(natural)
@@ -129,10 +130,9 @@ def moved_contact(
         edges, positions = moving_edges(scene, stretches)
         if not edges:
             return MovedContact("converged", solutions, stretches, system, force)
-        search, meshes = _search(scene, natural, stretches, edges, positions, system_on)
-        system = system_on(meshes, None)
+        search = _search(scene, natural, stretches, edges, positions, system_on)
+        system, solutions = search.system, solutions + len(search.steps)
         force = unilateral_contact(system.compliance, system.initial_gap, system.spring)
-        solutions += len(search.steps) + 1
         found = stretches_in_contact(system, force)
         wanted = moved(stretches, edges, search.positions)
         if search.outcome == "converged" and same_topology(found, wanted):
@@ -149,18 +149,11 @@ def _search(
     edges: Sequence[Edge],
     positions: Array,
     system_on: SystemOn,
-) -> tuple[EdgeSearch, dict[str, RodMesh]]:
-    """One search with the borders that follow each edge chosen beforehand, and the meshes it ended with."""
+) -> EdgeSearch:
+    """One search with the borders that follow each edge chosen beforehand."""
     plan = border_plan(scene, natural, edges, positions)
 
-    def system_at(at: Array) -> ContactSystem:
-        # Only what is held in contact tells where the edges are.
-        held = moved(stretches, edges, at)
-        within = {
-            pair.name: np.array([[s.start, s.end] for s in held if s.pair == pair.name]).reshape(-1, 2)
-            for pair in scene.contacts
-        }
-        return system_on(placed_meshes(scene, plan, edges, at), within)
+    def system_at(at: Array) -> tuple[ContactSystem, dict[str, Rates]]:
+        return system_on(placed_meshes(scene, plan, edges, at)), edge_rates(scene, plan, edges, at)
 
-    search = find_edges(scene, stretches, edges, positions, system_at)
-    return search, placed_meshes(scene, plan, edges, search.positions)
+    return find_edges(scene, stretches, edges, positions, system_at)

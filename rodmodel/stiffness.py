@@ -74,6 +74,7 @@ class Element:
     ----------
     fields, order : of its displacement over the section and along the rod
     length : mm
+    section : its section stiffness; at the points of its quadrature where it varies along the element
     condensed : K_nn - K_nb K_bb^-1 K_bn, shape (n_nodal, n_nodal)
     bubbles : L of K_bb = L L^T
     half_coupling : L^-1 K_bn, shape (n_bubbles, n_nodal)
@@ -82,6 +83,7 @@ class Element:
     fields: Fields
     order: int
     length: float
+    section: SectionStiffness
     condensed: Array
     bubbles: BubbleFactor
     half_coupling: Array
@@ -94,6 +96,7 @@ class ElementFamily:
     Attributes
     ----------
     fields, order : of the displacement over the section and along the rod
+    section : what the terms were made from
     groups : bubbles that couple with one another alone
     nodal : terms of K_nn, shape (3, n_nodal, n_nodal)
     coupling : terms of K_bn by group, shape (3, n_group, n_nodal) each
@@ -102,6 +105,7 @@ class ElementFamily:
 
     fields: Fields
     order: int
+    section: SectionStiffness
     groups: tuple[IntArray, ...]
     nodal: Array
     coupling: tuple[Array, ...]
@@ -122,6 +126,7 @@ def element_family(order: int, fields: Fields, section: SectionStiffness, revers
     return ElementFamily(
         fields,
         order,
+        section,
         groups,
         np.ascontiguousarray(terms[:, :n_nodal, :n_nodal]),
         tuple(np.ascontiguousarray(terms[:, row, :n_nodal]) for row in rows),
@@ -140,7 +145,19 @@ def condensed_element(family: ElementFamily, length: float) -> Element:
     half = np.concatenate(
         [lower_solve(block, at_length(terms)) for block, terms in zip(factor.blocks, family.coupling, strict=True)]
     )
-    return Element(family.fields, family.order, length, at_length(family.nodal) - half.T @ half, factor, half)
+    condensed = at_length(family.nodal) - half.T @ half
+    return Element(family.fields, family.order, length, family.section, condensed, factor, half)
+
+
+def length_slope(element: Element, first: Array, second: Array) -> float:
+    """Derivative of first . K second by the length of an element of constant section stiffness, for unit modulus.
+
+    first, second : degrees of freedom, shape (order + 1, n_fields) each, that stay where they are on the element
+    """
+    m00, _, m11 = axial_matrices(element.order)
+    growing = np.vdot(first, m00 @ second @ element.section.s00)
+    falling = np.vdot(first, m11 @ second @ element.section.s11)
+    return float(0.5 * growing - 2.0 / element.length**2 * falling)
 
 
 def axial_quadrature(order: int, left: float, right: float, knots: Array) -> tuple[Array, Array]:
@@ -177,7 +194,7 @@ def varying_element(
     bubbles = (np.arange(len(stiffness) - n_nodal),)
     factor = BubbleFactor(bubbles, (cholesky(stiffness[n_nodal:, n_nodal:]),))
     half = lower_solve(factor.blocks[0], stiffness[n_nodal:, :n_nodal])
-    return Element(fields, order, length, stiffness[:n_nodal, :n_nodal] - half.T @ half, factor, half)
+    return Element(fields, order, length, section, stiffness[:n_nodal, :n_nodal] - half.T @ half, factor, half)
 
 
 def varying_stiffness(order: int, length: float, quadrature: tuple[Array, Array], section: SectionStiffness) -> Array:

@@ -110,16 +110,10 @@ def contact_system(
     mirrors: Mapping[str, Mirrors],
     meshes: Mapping[str, RodMesh],
     store: ElementStore,
-    within: Mapping[str, Array] | None = None,
 ) -> ContactSystem:
-    """Assemble the rods on their meshes (by rod name) and reduce them to their contact points.
-
-    within : by pair name, the parts of its zone that get contact points (start and end, mm along the first rod, shape
-        (n, 2)); the whole of every zone if not given
-    """
+    """Assemble the rods on their meshes (by rod name) and reduce them to their contact points."""
     rods = {rod.name: assembled_rod(scene, rod, mirrors[rod.name], meshes[rod.name], store) for rod in scene.rods}
-    whole = {pair.name: np.array([pair.zone]) for pair in scene.contacts}
-    grids = {pair.name: _grid(scene, pair, rods, mirrors, (within or whole)[pair.name]) for pair in scene.contacts}
+    grids = {pair.name: _grid(scene, pair, rods, mirrors) for pair in scene.contacts}
     counts = [grid.weight.size for grid in grids.values()]
     ends = np.cumsum([0, *counts])
     points = {name: slice(ends[i], ends[i + 1]) for i, name in enumerate(grids)}
@@ -153,7 +147,6 @@ def _grid(
     pair: ContactPair,
     rods: Mapping[str, AssembledRod],
     mirrors: Mapping[str, Mirrors],
-    within: Array,
 ) -> ContactGrid:
     """Contact points between the borders of both rods: enough of them to integrate the penalty energy exactly."""
     first, second = rods[pair.first.rod], rods[pair.second.rod]
@@ -163,8 +156,6 @@ def _grid(
     borders = np.concatenate([[start], inside, [end]])
     borders = borders[np.concatenate([[True], np.diff(borders) > SAME_BORDER])]
     intervals = np.column_stack([borders[:-1], borders[1:]])
-    middle = intervals.mean(axis=1)[:, None]
-    intervals = intervals[((within[:, 0] < middle) & (middle < within[:, 1])).any(axis=1)]
     n_across = max(first.level, second.level) + 2
     across_is_x = face_axes(first.rod, pair.first.face).axis == 1
     symmetric = mirrors[pair.first.rod][0 if across_is_x else 1]

@@ -7,7 +7,7 @@ import pytest
 
 from cases.loader import load_case
 from cases.scene import Scene, SectionForce
-from rodmodel.borders import Edge, border_plan, natural_mesh, placed_meshes
+from rodmodel.borders import Edge, border_plan, edge_rates, natural_mesh, placed_meshes
 
 
 @pytest.fixture
@@ -57,3 +57,19 @@ def test_loads_and_zone_ends_are_borders_and_do_not_move(scene: Scene) -> None:
     borders = placed(loaded, BOTH, [239.0, 262.0])["lower"]
     assert 240.0 in borders
     assert 239.0 in borders
+
+
+@pytest.mark.parametrize("position", [236.0, 243.0])
+def test_rates_tell_how_borders_follow_the_edges(scene: Scene, position: float) -> None:
+    """Also where an edge has crossed a border that a load holds, and has changed places with it."""
+    load = SectionForce("lower", 240.0, (0.0, -1.0, 0.0))
+    loaded = replace(scene, loads=(*scene.loads, load))
+    natural = {rod.name: natural_mesh(loaded, rod, 3, 4) for rod in loaded.rods}
+    plan = border_plan(loaded, natural, BOTH, np.array([236.0, 262.0]))
+    at = np.array([position, 262.0])
+    before = placed_meshes(loaded, plan, BOTH, at)
+    rates = edge_rates(loaded, plan, BOTH, at)
+    for number, step in enumerate(np.eye(2)):
+        for name, mesh in placed_meshes(loaded, plan, BOTH, at + step).items():
+            moved = mesh.borders - before[name].borders
+            np.testing.assert_allclose(rates[name].at(before[name].borders)[number], moved, atol=1e-12)

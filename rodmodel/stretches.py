@@ -1,0 +1,86 @@
+"""Stretches of a zone in contact, as a contact solution shows them, and which of their ends can move."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cases.scene import Scene
+from rodmodel.borders import Edge
+from rodmodel.system import ContactSystem
+
+Array = NDArray[np.float64]
+
+# Shortest stretch as a part of the zone: contact that wants less is contact at a corner or a point, and its edges are
+# known to that length. An edge as close to the zone's end is on it.
+SHORTEST = 2e-3
+
+
+@dataclass(frozen=True)
+class Stretch:
+    """A part of a zone in contact, mm along the first rod."""
+
+    pair: str
+    start: float
+    end: float
+
+
+def stretches_in_contact(system: ContactSystem, force: Array) -> tuple[Stretch, ...]:
+    """Stretches closed in the middle of the width, each end half way between a closed and an open station.
+
+    Openings shorter than an element are not believed: a mesh whose borders are not on the edges shows such ripples.
+    """
+    stretches = []
+    for pair, grid in system.grids.items():
+        station = grid.station.ravel()
+        length = np.repeat(grid.station[:, -1] - grid.station[:, 0], grid.station.shape[1])
+        closed = np.flatnonzero(force[system.points[pair]].reshape(grid.weight.shape)[:, :, grid.middle] > 0.0)
+        opening = np.diff(station[closed]) >= length[closed[1:]]
+        for run in np.split(closed, np.flatnonzero(opening) + 1) if len(closed) else []:
+            before, after = max(run[0] - 1, 0), min(run[-1] + 1, len(station) - 1)
+            start, end = 0.5 * (station[run[0]] + station[before]), 0.5 * (station[run[-1]] + station[after])
+            stretches.append(Stretch(pair, *_snapped(system.scene, pair, float(start), float(end))))
+    return tuple(stretches)
+
+
+def _snapped(scene: Scene, pair: str, start: float, end: float) -> tuple[float, float]:
+    """Ends next to the zone's end lie on it."""
+    low, high = scene.contact(pair).zone
+    margin = shortest_length(scene, pair)
+    return low if start < low + margin else start, high if end > high - margin else end
+
+
+def shortest_length(scene: Scene, pair: str) -> float:
+    """Length of the shortest stretch of a pair, mm."""
+    low, high = scene.contact(pair).zone
+    return SHORTEST * (high - low)
+
+
+def moving_edges(scene: Scene, stretches: Sequence[Stretch]) -> tuple[tuple[Edge, ...], Array]:
+    """Ends of stretches that lie inside their zone, and where (mm along the first rod)."""
+    found = [
+        (Edge(stretch.pair, number, outward), position)
+        for number, stretch in enumerate(stretches)
+        for outward, position in ((-1, stretch.start), (1, stretch.end))
+        if position not in scene.contact(stretch.pair).zone
+    ]
+    return tuple(edge for edge, _ in found), np.array([position for _, position in found])
+
+
+def moved(stretches: Sequence[Stretch], edges: Sequence[Edge], positions: Array) -> tuple[Stretch, ...]:
+    """The stretches with their moving ends at `positions`."""
+    result = list(stretches)
+    for edge, position in zip(edges, positions, strict=True):
+        stretch, end = result[edge.stretch], float(position)
+        result[edge.stretch] = replace(stretch, start=end) if edge.outward < 0 else replace(stretch, end=end)
+    return tuple(result)
+
+
+def same_topology(some: Sequence[Stretch], others: Sequence[Stretch]) -> bool:
+    """Whether both tell of the same stretches, with ends in about the same places."""
+    return len(some) == len(others) and all(
+        a.pair == b.pair and a.start < b.end and b.start < a.end for a, b in zip(some, others, strict=True)
+    )
