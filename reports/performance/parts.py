@@ -19,7 +19,6 @@ from rodmodel.assembly import ElementStore, assembled_rod
 from rodmodel.borders import natural_mesh
 from rodmodel.centre_line import darboux
 from rodmodel.contact import unilateral_contact
-from rodmodel.mesh import RodMesh
 from rodmodel.section import Fields, per_axial_modulus, section_stiffness
 from rodmodel.solver import moved_contact
 from rodmodel.stiffness import condensed_element, element_family
@@ -115,11 +114,7 @@ def parts(name: str = CASE, level: int = LEVEL, order: int = ORDER) -> dict[str,
 
     def search(prepared: tuple[ElementStore, ContactSystem]) -> None:
         store, system = prepared
-
-        def system_on(meshes: dict[str, RodMesh], within: dict[str, Any] | None = None) -> ContactSystem:
-            return contact_system(scene, mirrors, meshes, store, within)
-
-        moved_contact(scene, meshes, system, system_on)
+        moved_contact(scene, meshes, system, lambda placed: contact_system(scene, mirrors, placed, store))
 
     solution = rm.solve(scene, level, order)
     return {
