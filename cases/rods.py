@@ -56,8 +56,6 @@ class Rod:
         borders = (*borders[:-1], length)
         if isinstance(self.centre_line, Path):
             borders = _on_piece_borders(borders, self.centre_line)
-            rising = all(a < b for a, b in pairwise(borders))
-            require(rising, key, list(self.element_borders), "name the border between two pieces once")
         object.__setattr__(self, "element_borders", borders)
         _require_roomy(self.centre_line, self.section, f"rods.{self.name}.centre_line")
 
@@ -68,10 +66,13 @@ class Rod:
 
 
 def _on_piece_borders(borders: tuple[float, ...], path: Path) -> tuple[float, ...]:
-    """Borders of elements, those written with rounded lengths set to the borders of the path's pieces."""
-    nearest = [min(path.borders, key=lambda at: abs(at - border)) for border in borders]
-    slack = ROUNDED * path.length
-    return tuple(at if abs(at - border) <= slack else border for at, border in zip(nearest, borders, strict=True))
+    """Borders of elements, with those that were written for the ends of the path's pieces, but rounded, set to them."""
+    places = np.array(borders)
+    for end in path.borders:
+        nearest = np.argmin(np.abs(places - end))
+        if abs(places[nearest] - end) <= ROUNDED * path.length:
+            places[nearest] = end
+    return tuple(places.tolist())
 
 
 def _require_roomy(line: CentreLine, section: Section, key: str) -> None:
@@ -114,11 +115,16 @@ Placed = TypeVar("Placed")
 
 
 def not_beyond_end(placed: Placed, rod: Rod) -> Placed:
-    """A load, support or bed, set to the end of the rod where it was written there with a rounded length."""
-    for name in ("position", "end"):
+    """A load, support or bed, set to the end of the rod where it was written there with a rounded length.
+
+    Likewise to the ends of a path's pieces: a place a little beside one would cut off a sliver of an element.
+    """
+    inner = rod.centre_line.borders[1:-1] if isinstance(rod.centre_line, Path) else ()
+    for name, ends in (("position", (*inner, rod.length)), ("start", inner), ("end", (*inner, rod.length))):
         place = getattr(placed, name, None)
-        if isinstance(place, float) and math.isclose(place, rod.length, rel_tol=ROUNDED):
-            return replace(placed, **{name: rod.length})  # type: ignore[type-var]
+        meant = [end for end in ends if isinstance(place, float) and math.isclose(place, end, rel_tol=ROUNDED)]
+        if meant:
+            placed = replace(placed, **{name: meant[0]})  # type: ignore[type-var]
     return placed
 
 

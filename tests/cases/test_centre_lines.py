@@ -7,7 +7,20 @@ import numpy as np
 import pytest
 
 from cases.centre_lines import curvatures, end_axes
-from cases.scene import Helix, Line, Material, Path, Rectangle, Rod, SceneError, Spline
+from cases.scene import (
+    Clamp,
+    Helix,
+    Line,
+    LineLoad,
+    Material,
+    Path,
+    Rectangle,
+    Rod,
+    Scene,
+    SceneError,
+    SectionForce,
+    Spline,
+)
 
 STEEL = Material(200e3, 0.3)
 UP = (0.0, 0.0, 1.0)
@@ -114,13 +127,22 @@ def test_the_up_that_a_refusal_names_is_right():
     assert Path((twisted, replace(bow, up=named))).length == pytest.approx(150.0)
 
 
-def test_rounded_borders_between_pieces_are_set_to_them():
+def test_rounded_places_between_pieces_are_set_to_them():
     path = Path((ARC, STRAIGHT))
 
     rod = Rod("bow", path, Rectangle(5.0, 5.0), STEEL, (0.0, 100.0, 157.08, 207.08))
+    load = LineLoad("bow", 157.0796, 207.08, (0.0, 0.0, 1.0))
+    loads = Scene("bow", (rod,), (Clamp("bow", "start"),), (load, SectionForce("bow", 157.08, UP)), ()).loads
+
     assert rod.element_borders == (0.0, 100.0, ARC.length, path.length)
-    twice = refusal(Rod, "bow", path, Rectangle(5.0, 5.0), STEEL, (0.0, 157.079, 157.08, 207.08))
-    assert twice.key == "rods.bow.element_borders"
+    assert (loads[0].start, loads[0].end, loads[1].position) == (ARC.length, path.length, ARC.length)
+
+
+def test_of_two_borders_near_the_end_of_a_piece_the_nearer_is_set_to_it():
+    path = Path((ARC, STRAIGHT))
+
+    rod = Rod("bow", path, Rectangle(5.0, 5.0), STEEL, (0.0, 157.07, 157.08, path.length))
+    assert rod.element_borders == (0.0, 157.07, ARC.length, path.length)
 
 
 @pytest.mark.parametrize(
