@@ -101,6 +101,10 @@ def by_turning(turning: Array, evaluate: Callable[[tuple[float, float, float]], 
     turning : shape (3, n)
     evaluate : gives an array of any shape, for a result of shape (n, ...)
     """
+    if (turning == turning[:, :1]).all():
+        k1, k2, tau = turning[:, 0].tolist()
+        result = evaluate((k1, k2, tau))
+        return np.broadcast_to(result, (turning.shape[1], *result.shape))
     rates, places = np.unique(turning, axis=1, return_inverse=True)
     return np.stack([evaluate((k1, k2, tau)) for k1, k2, tau in rates.T.tolist()])[places.ravel()]
 
