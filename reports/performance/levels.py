@@ -1,4 +1,4 @@
-"""Seconds and error of a library case by level and order, against the finest of them."""
+"""Processor seconds and error of a library case by level and order, against the finest of them."""
 
 from __future__ import annotations
 

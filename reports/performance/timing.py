@@ -1,4 +1,8 @@
-"""Seconds of repeated work: medians and quartiles, since single runs are noisy."""
+"""Processor seconds of repeated work: medians and quartiles, since single runs are noisy.
+
+Processor seconds, summed over threads, do not count the time in which the machine was busy with something else; on an
+idle machine one thread's are those of a clock on the wall.
+"""
 
 from __future__ import annotations
 
@@ -10,7 +14,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Timing:
-    """Seconds of several runs of the same work, at least one, in the order they were run."""
+    """Processor seconds of several runs of the same work, at least one, in the order they were run."""
 
     seconds: tuple[float, ...]
 
@@ -34,20 +38,15 @@ class Timing:
 
 
 def once(work: Callable[..., object], *given: object) -> float:
-    """Wall-clock seconds of one run of work(*given)."""
-    begin = time.perf_counter()
+    """Processor seconds of one run of work(*given)."""
+    begin = time.process_time()
     work(*given)
-    return time.perf_counter() - begin
+    return time.process_time() - begin
 
 
 def repeated(work: Callable[[], object], seconds: float, at_most: int) -> tuple[float, ...]:
-    """Run once and again until so many processor seconds are spent, but so often at most; seconds of the runs.
-
-    Processor seconds, summed over threads, do not count the time in which the machine was busy with something else.
-    """
+    """Run once and again until so many seconds are spent, but so often at most; seconds of the runs."""
     spent: list[float] = []
     while not spent or (sum(spent) < seconds and len(spent) < at_most):
-        begin = time.process_time()
-        work()
-        spent.append(time.process_time() - begin)
+        spent.append(once(work))
     return tuple(spent)

@@ -171,10 +171,7 @@ def sizes_note(series: tuple[Series, ...]) -> str:
         "and more."
     )
     outcome = f" {len(failed)} of the solves did not converge." if failed else ""
-    return (
-        f"Seconds are processor seconds, medians of {min(runs)} to {max(runs)} runs with their quartiles: they do not "
-        f"count the time in which the machine was busy with something else. {agree}{outcome}"
-    )
+    return f"Seconds are medians of {min(runs)} to {max(runs)} runs, with their quartiles. {agree}{outcome}"
 
 
 def parts_note(breakdown: Breakdown) -> str:
