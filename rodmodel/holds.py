@@ -79,7 +79,8 @@ def hold(scene: Scene, rod: Rod, held: Held, fields: Fields) -> Hold:
     match held.by:
         case Clamp():
             motion = np.concatenate([held.by.displacement, held.by.rotation])
-            return Hold(all_held, motion @ _global_motions(rod, held.station, fields), none)
+            given = motion @ _global_motions(rod, held.station, fields) if motion.any() else at_rest
+            return Hold(all_held, given, none)
         case Joint():
             motions = _global_motions(rod, held.station, fields)
             # Turned about the joint's point, a centre beside it (by round-off of what was written) moves along.
