@@ -158,7 +158,7 @@ def draw(scene: Scene, quantities: Quantities) -> Picture:
         title="Displacement of the centre line, mm\n",
         mapper=coloured.mapper,
         n_labels=5,
-        fmt="{:.2f}",
+        fmt="{:.3g}",
         color=INK,
         title_font_size=24,
         label_font_size=22,

@@ -152,7 +152,7 @@ def _supports(scene: Scene, quantities: Quantities, bands: dict[str, _Band], pla
             index = 0 if support.end == "start" else -1
             outward = band.tangent[:, index] * (-1.0 if support.end == "start" else 1.0)
             across = 0.9 * (band.left[index] - band.right[index]) * band.normal[:, index]
-            drawn.add(symbols.wall(band.centre[:, index], outward, across))
+            drawn.add(symbols.wall(band.centre[:, index], outward, across), band.centre[:, index] + 8.0 * outward)
             if any(support.displacement) or any(support.rotation):
                 sideways = abs(outward[0]) > abs(outward[1])
                 beside = np.array([0.0, -float(np.linalg.norm(across)) - 10.0]) if sideways else 12.0 * outward

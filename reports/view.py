@@ -61,7 +61,8 @@ def view_plane(scene: Scene, quantities: Quantities) -> Array:
     """Directions to the right and upwards, shape (2, 3): the plane of the first rod's frame that shows most.
 
     Of the three planes at the rod's start it is the one in which centre lines and loads cover the largest box; where
-    none covers any, that of t and e2.
+    none covers any, that of t and e2. It is turned as one draws global axes: X to the right, Z upwards, and Y where
+    the other one is not.
     """
     first, second, tangent = quantities.rods[0].axes[0]
     points = [rod.position for rod in quantities.rods]
@@ -70,7 +71,14 @@ def view_plane(scene: Scene, quantities: Quantities) -> Array:
         points.append(arrows.place - _ARROW * extent(quantities) * arrows.direction)
     planes = [np.array(pair) for pair in ((tangent, second), (tangent, first), (first, second))]
     areas = [float(np.prod(np.ptp(plane @ np.hstack(points), axis=1))) for plane in planes]
-    return planes[int(np.argmax(np.array(areas) > 0.999 * max(areas)))]
+    return _upright(planes[int(np.argmax(np.array(areas) > 0.999 * max(areas)))])
+
+
+def _upright(plane: Array) -> Array:
+    """Two directions, shape (2, 3), in the order and with the signs that point most to the right and upwards."""
+    rightwards, upwards = np.array([1.0, 0.5, 0.25]), np.array([0.25, 0.5, 1.0])
+    right, up = plane[::-1] if abs(plane[1] @ rightwards) > abs(plane[0] @ rightwards) else plane
+    return np.array([right if right @ rightwards > 0.0 else -right, up if up @ upwards > 0.0 else -up])
 
 
 def load_arrows(load: Load, rod: RodQuantities) -> LoadArrows:

@@ -7,9 +7,23 @@ import math
 import numpy as np
 import pytest
 
-from cases.scene import Clamp, Gravity, Helix, Material, Pressure, Rectangle, Rod, RodFace, Scene, SectionForce, Support
+from cases.scene import (
+    Clamp,
+    Gravity,
+    Helix,
+    Line,
+    Material,
+    Pressure,
+    Rectangle,
+    Rod,
+    RodFace,
+    Scene,
+    SectionForce,
+    Support,
+    Vector,
+)
 from reports.quantities import RodQuantities, evaluate
-from reports.view import ARROWS, face_normals, held_directions, load_arrows
+from reports.view import ARROWS, face_normals, held_directions, load_arrows, view_plane
 from rodmodel import solve
 
 RADIUS = 100.0
@@ -22,6 +36,25 @@ def arc() -> RodQuantities:
     rod = Rod("arc", ARC, Rectangle(30.0, 20.0), Material(200_000.0, 0.3), (0.0, ARC.length))
     scene = Scene("arc", (rod,), (Clamp("arc", "start"),), (SectionForce("arc", 50.0, (1.0, 0.0, 0.0)),), ())
     return evaluate(solve(scene, 1, 2)).rods[0]
+
+
+@pytest.mark.parametrize(
+    ("start", "end", "up", "expected"),
+    [
+        ((0.0, 0.0, 0.0), (100.0, 0.0, 0.0), (0.0, 1.0, 0.0), [[1, 0, 0], [0, 1, 0]]),
+        ((100.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, -1.0, 0.0), [[1, 0, 0], [0, 1, 0]]),
+        ((0.0, 0.0, 0.0), (0.0, 100.0, 0.0), (1.0, 0.0, 0.0), [[1, 0, 0], [0, 1, 0]]),
+        ((0.0, 0.0, 0.0), (0.0, 0.0, 100.0), (1.0, 0.0, 0.0), [[1, 0, 0], [0, 0, 1]]),
+        ((0.0, 0.0, 0.0), (0.0, 0.0, 100.0), (0.0, 1.0, 0.0), [[0, 1, 0], [0, 0, 1]]),
+    ],
+)
+def test_a_scene_is_seen_as_one_draws_global_axes(
+    start: Vector, end: Vector, up: Vector, expected: list[list[float]]
+) -> None:
+    rod = Rod("rod", Line(start, end, up), Rectangle(5.0, 5.0), Material(200_000.0, 0.3), (0.0, 100.0))
+    scene = Scene("rod", (rod,), (Clamp("rod", "start"),), (SectionForce("rod", 50.0, up),), ())
+
+    assert view_plane(scene, evaluate(solve(scene, 1, 2))) == pytest.approx(np.array(expected, dtype=float))
 
 
 def test_faces_look_away_from_the_centre_line(arc: RodQuantities) -> None:
