@@ -22,6 +22,7 @@ class Setting:
 
     Attributes
     ----------
+    contact_solutions : spent on the way
     force : magnitude of the contact force, N
     """
 
@@ -29,6 +30,7 @@ class Setting:
     order: int
     unknowns: int
     outcome: str
+    contact_solutions: int
     timing: Timing
     force: float
 
@@ -74,5 +76,6 @@ def measured_levels(given: tuple[tuple[int, ...], tuple[int, ...], int], progres
     for (level, order), solution in solutions.items():
         force = evaluate(solution, points.stations, points.stress_points).contact(pair).force
         timing = Timing(tuple(seconds[level, order]))
-        settings.append(Setting(level, order, solution.cost.unknowns, solution.outcome, timing, force))
+        spent = solution.contact_solutions
+        settings.append(Setting(level, order, solution.cost.unknowns, solution.outcome, spent, timing, force))
     return LevelStudy(case.title, pair, tuple(settings))

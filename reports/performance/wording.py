@@ -208,10 +208,12 @@ def levels_caption(study: LevelStudy) -> str:
 def levels_note(study: LevelStudy) -> str:
     """What the cells of the table of levels and orders hold."""
     runs = study.settings[0].timing.runs
+    spent = [setting.contact_solutions for setting in study.settings]
     return (
         f"Each cell: milliseconds of a solve (median of {runs}) and, below, the difference of the contact force from "
         f"that of h{study.finest.level}, p = {study.finest.order}, {study.finest.force:.3f} N. All on the elements of "
-        "the case file: what those leave out, all settings share."
+        "the case file: what those leave out, all settings share. Times depend also on how many contact solutions it "
+        f"takes to find the edges, here {min(spent)} to {max(spent)}."
     )
 
 

@@ -54,7 +54,7 @@ def breakdown() -> Breakdown:
 def study(*forces: float) -> LevelStudy:
     """Level after level at p = 4, a millisecond more a level."""
     settings = [
-        Setting(level, 4, 100 * level, "converged", Timing((1e-3 * level,)), force)
+        Setting(level, 4, 100 * level, "converged", level + 2, Timing((1e-3 * level,)), force)
         for level, force in enumerate(forces, 1)
     ]
     return LevelStudy("Two bars", "overlap", tuple(settings))
@@ -206,6 +206,7 @@ def test_sentences_are_made_from_the_data(performance: Performance) -> None:
     assert "between 1.00 and 1.00" in wording.relative_caption(performance.series)
     assert "is h2, p = 4: −0.05 % in 2 ms" in wording.levels_caption(performance.study)
     assert "No other setting" in wording.levels_caption(study(90.0, 99.0, 100.0))
+    assert "here 3 to 5" in wording.levels_note(performance.study)
     assert "takes 10 % of a solve" in wording.parts_note(performance.breakdown)
 
 
