@@ -19,11 +19,12 @@ from rodmodel.axial import gauss
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
-# Points of the Gauss rule, and the share of the length by which halving all cells may still change it.
-POINTS, SETTLED = 16, 1e-14
+# Points of the Gauss rule, and the share of a piece's length by which halving its cells may still change it.
+POINTS, SETTLED = 16, 1e-13
 MOST_HALVINGS = 8
-# Newton's steps from an even distribution of the length over a cell; four are usual.
-MOST_STEPS = 20
+# Newton's steps from an even distribution of the length over a cell, four are usual; share of the whole that the last
+# one may take.
+MOST_STEPS, LAST_STEP = 20, 1e-14
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,28 +74,40 @@ def spline_curve(line: Spline) -> SplineCurve:
         ]
     )
     up = np.array(line.up, dtype=float)
-    found = np.inf
+    cells, on_cells, lengths = _cells(knots, powers)
+    stations = np.concatenate([[0.0], np.cumsum(lengths)])
+    first, last = _tangents(on_cells, np.zeros(len(lengths))), _tangents(on_cells, np.diff(cells))
+    if line.frame == "up":
+        axes = _upright(first, up)
+    else:
+        e1 = np.empty_like(first)
+        e1[0] = _upright(first[:1], up)[0, 0]
+        for cell, moved in enumerate(_transport(first, last, _swept_angle(on_cells, np.diff(cells)))[:-1]):
+            e1[cell + 1] = moved @ e1[cell]
+        axes = np.stack([e1, np.cross(first, e1), first], axis=1)
+    return SplineCurve(up, line.frame == "up", knots, cells, on_cells, stations, axes)
+
+
+def _cells(knots: Array, powers: Array) -> tuple[Array, Array, Array]:
+    """Borders of the cells, cubics on them and their lengths: every piece halved until its length does not change.
+
+    Raises
+    ------
+    ValueError
+        if it still does after the last halving.
+    """
+    chord = np.diff(knots)[:, None]
+    found = np.full(len(chord), np.inf)
     for halvings in range(MOST_HALVINGS + 1):
         parts = 2**halvings
-        cells = np.append((knots[:-1, None] + h * (np.arange(parts) / parts)).ravel(), knots[-1])
-        on_cells = _shifted(powers, h * (np.arange(parts) / parts))
+        starts = chord * (np.arange(parts) / parts)
+        cells = np.append((knots[:-1, None] + starts).ravel(), knots[-1])
+        on_cells = _shifted(powers, starts)
         lengths = _lengths(on_cells, np.diff(cells))
-        before, found = found, float(lengths.sum())
-        if abs(found - before) <= SETTLED * found:
-            break
-    stations = np.concatenate([[0.0], np.cumsum(lengths)])
-    axes = np.empty((len(cells) - 1, 3, 3))
-    curve = SplineCurve(up, line.frame == "up", knots, cells, on_cells, stations, axes)
-    first, last = _tangents(on_cells, np.zeros(len(axes))), _tangents(on_cells, np.diff(cells))
-    if curve.follows_up:
-        axes[:] = _upright(first, up)
-        return curve
-    axes[:1] = _upright(first[:1], up)
-    turned = _swept_angle(on_cells, np.diff(cells))
-    for cell in range(len(axes) - 1):
-        here = slice(cell, cell + 1)
-        axes[cell + 1] = _moved(axes[here], last[here], turned[here])[0]
-    return curve
+        before, found = found, lengths.reshape(-1, parts).sum(axis=1)
+        if np.all(np.abs(found - before) <= SETTLED * found):
+            return cells, on_cells, lengths
+    raise ValueError("a spline nearly stops and turns back; give more points where it turns sharply")
 
 
 def _second_derivatives(chord: Array, rise: Array) -> Array:
@@ -183,7 +196,7 @@ def _located(curve: SplineCurve, station: Array) -> tuple[IntArray, Array]:
         slope, _ = _derivatives(powers, v)
         step = (beyond - _lengths(powers, v)) / np.linalg.norm(slope, axis=1)
         v = np.clip(v + step, 0.0, width)
-        if np.abs(step).max(initial=0.0) <= SETTLED * curve.knots[-1]:
+        if np.abs(step).max(initial=0.0) <= LAST_STEP * curve.knots[-1]:
             break
     return cell, v
 
@@ -193,7 +206,9 @@ def _frames(curve: SplineCurve, cell: IntArray, v: Array) -> Array:
     tangent = _tangents(powers, v)
     if curve.follows_up:
         return _upright(tangent, curve.up)
-    return _moved(curve.axes[cell], tangent, _swept_angle(powers, v))
+    axes = curve.axes[cell]
+    e1 = np.einsum("nij,nj->ni", _transport(axes[:, 2], tangent, _swept_angle(powers, v)), axes[:, 0])
+    return np.stack([e1, np.cross(tangent, e1), tangent], axis=1)
 
 
 def _upright(tangent: Array, up: Array) -> Array:
@@ -218,10 +233,13 @@ def _swept_angle(powers: Array, v: Array) -> Array:
     return np.asarray(half * (swept @ weight))
 
 
-def _moved(axes: Array, tangent: Array, angle: Array) -> Array:
-    """Frames turned straight to new tangents, then about these; shapes (n, 3, 3), (n, 3), (n,)."""
-    e1, first = axes[:, 0], axes[:, 2]
-    share = (e1 * tangent).sum(axis=1) / (1.0 + (first * tangent).sum(axis=1))
-    straight = e1 - share[:, None] * (first + tangent)
-    e1 = np.cos(angle)[:, None] * straight + np.sin(angle)[:, None] * np.cross(tangent, straight)
-    return np.stack([e1, np.cross(tangent, e1), tangent], axis=1)
+def _transport(first: Array, tangent: Array, angle: Array) -> Array:
+    """What turns vectors normal to the first tangent straight to another one, then about it; shape (n, 3, 3).
+
+    first, tangent : unit vectors, shape (n, 3)
+    angle : rad, shape (n,)
+    """
+    share = tangent / (1.0 + (first * tangent).sum(axis=1))[:, None]
+    straight = np.eye(3) - (first + tangent)[:, :, None] * share[:, None, :]
+    across = np.cross(tangent[:, None], straight.transpose(0, 2, 1)).transpose(0, 2, 1)
+    return np.asarray(np.cos(angle)[:, None, None] * straight + np.sin(angle)[:, None, None] * across)
