@@ -15,10 +15,10 @@ from numpy.typing import NDArray
 
 from cases.scene import Rod, Scene
 from rodmodel.axial import shape_functions
-from rodmodel.centre_line import by_turning, constant_turning, knots, turning_at
+from rodmodel.centre_line import by_turning, constant_turnings, knots, turning_at
 from rodmodel.chain import Chain, node_fields
 from rodmodel.face import Springs, bed_stiffness, springs_under
-from rodmodel.holds import Hold, extended, held_sections, hold, restricted
+from rodmodel.holds import Held, Hold, extended, held_sections, hold, restricted
 from rodmodel.mesh import SAME_BORDER, RodMesh
 from rodmodel.section import Darboux, Fields, axial_modulus, per_axial_modulus, section_stiffness
 from rodmodel.stiffness import (
@@ -49,16 +49,35 @@ class ElementStore:
     _elements: dict[Hashable, Element] = field(default_factory=dict)
     chains: dict[str, Chain] = field(default_factory=dict)
 
-    def element(self, rod: Rod, springs: Springs, fields: Fields, order: int, ends: tuple[float, float]) -> Element:
+    def element(
+        self,
+        rod: Rod,
+        turning: Darboux | None,
+        springs: Springs,
+        fields: Fields,
+        order: int,
+        ends: tuple[float, float],
+    ) -> Element:
         """Condensed element of the rod for unit axial modulus.
 
+        turning : of its frame, rad/mm; None if it varies
         springs : beds under its faces, their moduli in units of the axial modulus
-        ends : arc length of its ends, mm
+        ends : arc lengths of its ends, mm
         """
-        turning = constant_turning(rod.centre_line, *ends)
         if turning is None:
             return self._varying(rod, springs, fields, order, ends)
-        return self._constant(rod, turning, springs, fields, order, ends[1] - ends[0])
+        length = ends[1] - ends[0]
+        kind = (rod.section, per_axial_modulus(rod.material), fields, order, turning, springs)
+        if kind not in self._families:
+            section = section_stiffness(rod.section, per_axial_modulus(rod.material), fields, turning)
+            if springs:
+                section = replace(section, s00=section.s00 + bed_stiffness(rod.section, springs, fields, turning))
+            self._families[kind] = element_family(order, fields, section, reversible=turning[2] == 0.0)
+        # Lengths that differ only by the round-off of the borders they come from are one length.
+        key = (*kind, float(f"{length:.11e}"))
+        if key not in self._elements:
+            self._elements[key] = condensed_element(self._families[kind], length)
+        return self._elements[key]
 
     def _varying(self, rod: Rod, springs: Springs, fields: Fields, order: int, ends: tuple[float, float]) -> Element:
         material, line = per_axial_modulus(rod.material), rod.centre_line
@@ -71,21 +90,6 @@ class ElementStore:
                 beds = by_turning(turning, lambda rates: bed_stiffness(rod.section, springs, fields, rates))
                 section = replace(section, s00=section.s00 + beds)
             self._elements[key] = varying_element(order, fields, ends[1] - ends[0], quadrature, section)
-        return self._elements[key]
-
-    def _constant(
-        self, rod: Rod, turning: Darboux, springs: Springs, fields: Fields, order: int, length: float
-    ) -> Element:
-        kind = (rod.section, per_axial_modulus(rod.material), fields, order, turning, springs)
-        if kind not in self._families:
-            section = section_stiffness(rod.section, per_axial_modulus(rod.material), fields, turning)
-            if springs:
-                section = replace(section, s00=section.s00 + bed_stiffness(rod.section, springs, fields, turning))
-            self._families[kind] = element_family(order, fields, section, reversible=turning[2] == 0.0)
-        # Lengths that differ only by the round-off of the borders they come from are one length.
-        key = (*kind, float(f"{length:.11e}"))
-        if key not in self._elements:
-            self._elements[key] = condensed_element(self._families[kind], length)
         return self._elements[key]
 
 
@@ -133,11 +137,11 @@ class AssembledRod:
 
 def assembled_rod(scene: Scene, rod: Rod, mirrors: Mirrors, mesh: RodMesh, store: ElementStore) -> AssembledRod:
     """Make (or fetch from `store`) the elements of the mesh and factorise the chain."""
-    under = springs_under(scene, rod, mesh.borders)
+    turnings, under = constant_turnings(rod.centre_line, mesh.borders), springs_under(scene, rod, mesh.borders)
     elements = tuple(
-        store.element(rod, springs, Fields(int(level), *mirrors), int(order), ends)
-        for level, order, ends, springs in zip(
-            mesh.levels, mesh.orders, pairwise(mesh.borders.tolist()), under, strict=True
+        store.element(rod, turning, springs, Fields(int(level), *mirrors), int(order), ends)
+        for level, order, ends, turning, springs in zip(
+            mesh.levels, mesh.orders, pairwise(mesh.borders.tolist()), turnings, under, strict=True
         )
     )
     fields = node_fields(elements)

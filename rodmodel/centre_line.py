@@ -88,11 +88,12 @@ def turning_at(line: CentreLine, station: Array) -> Array:
     return np.repeat(np.array(darboux(line))[:, None], len(station), axis=1)
 
 
-def constant_turning(line: CentreLine, left: float, right: float) -> tuple[float, float, float] | None:
-    """k1, k2, tau between two stations of the same piece (mm), or None where they vary."""
+def constant_turnings(line: CentreLine, borders: Array) -> list[tuple[float, float, float] | None]:
+    """k1, k2, tau between neighbouring borders (mm), each stretch on one piece of the line; None where they vary."""
     if isinstance(line, Path):
-        line = line.pieces[int(_piece_at(line, np.array([0.5 * (left + right)]))[0])]
-    return None if isinstance(line, Spline | Path) else darboux(line)
+        of_pieces = [None if isinstance(piece, Spline) else darboux(piece) for piece in line.pieces]
+        return [of_pieces[number] for number in _piece_at(line, 0.5 * (borders[:-1] + borders[1:]))]
+    return [None if isinstance(line, Spline) else darboux(line)] * (len(borders) - 1)
 
 
 def by_turning(turning: Array, evaluate: Callable[[tuple[float, float, float]], Array]) -> Array:

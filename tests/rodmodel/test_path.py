@@ -7,7 +7,7 @@ import numpy as np
 import rodmodel as rm
 from cases.scene import CentreLine, Path, Spline
 from rodmodel.borders import natural_mesh
-from rodmodel.centre_line import centre_points, constant_turning, darboux, frames, kinks, knots, turning_at
+from rodmodel.centre_line import centre_points, constant_turnings, darboux, frames, kinks, knots, turning_at
 
 STEEL = rm.Material(200e3, 0.3)
 UP = (0.0, 0.0, 1.0)
@@ -37,7 +37,7 @@ def test_its_turning_jumps_between_pieces() -> None:
     before, after = turning_at(HOOK, borders - 1e-6), turning_at(HOOK, borders + 1e-6)
     np.testing.assert_array_equal(before.T, [(0.0, 0.0, 0.0), darboux(ARC)])
     np.testing.assert_array_equal(after.T, [darboux(ARC), (0.0, 0.0, 0.0)])
-    assert constant_turning(HOOK, 80.0, 90.0) == darboux(ARC)
+    assert constant_turnings(HOOK, np.array([0.0, *borders])) == [(0.0, 0.0, 0.0), darboux(ARC)]
 
 
 def test_elements_end_between_pieces() -> None:
