@@ -25,7 +25,7 @@ from rodmodel.symmetry import scene_mirrors
 from rodmodel.system import ContactSystem, contact_system
 
 CASE, LEVEL, ORDER = "two-cantilevers-e50-g0", 5, 6
-REPEATS = 11
+REPEATS = 9
 
 WHOLE, SEARCH, CONTACT, QUANTITIES = "Whole solve", "Border search", "Unilateral contact", "Quantities"
 # What every part does, in a few words

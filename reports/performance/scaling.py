@@ -19,7 +19,7 @@ BoolArray = NDArray[np.bool_]
 
 LEVEL, ORDER = 2, 4
 SIZES = (10, 30, 100, 300, 1000, 3000, 10_000)
-UNEQUAL_SIZES = (10, 100, 1000, 3000, 10_000)
+UNEQUAL_SIZES = (10, 100, 300, 1000, 10_000)
 # The slope that counts is fitted from here on; below, what a solve costs whatever its size weighs too much.
 FITTED_FROM = 100
 # All numbers of elements are timed in turn, so many times over; small ones each time until so many processor seconds
