@@ -12,8 +12,9 @@ from reports.performance.levels import LevelStudy
 from reports.performance.measure import Performance
 from reports.performance.parts import QUANTITIES, TEXTS, WHOLE, Breakdown
 from reports.performance.scaling import LEVEL, ORDER, RESOLUTION, Series
-from reports.performance.wording import milliseconds, percent, spread
+from reports.performance.wording import milliseconds, spread
 from reports.store import write_whole
+from reports.verification.wording import relative
 
 FILE_NAME = "performance.html"
 
@@ -65,7 +66,7 @@ def render(found: Performance) -> str:
 
 
 def _size_rows(series: Series) -> list[list[str]]:
-    relative = series.relative(series.seconds)
+    linear = series.relative(series.seconds)
     return [
         [
             wording.count(size.elements),
@@ -79,7 +80,7 @@ def _size_rows(series: Series) -> list[list[str]]:
             f"{grown:.1f}" if told else f"below {RESOLUTION:g}",
             f"{-1e3 * size.deflection:.5f}",
         ]
-        for size, times, grown, told in zip(series.sizes, relative, series.growth, series.resolved, strict=True)
+        for size, times, grown, told in zip(series.sizes, linear, series.growth, series.resolved, strict=True)
     ]
 
 
@@ -93,7 +94,7 @@ def _part_rows(breakdown: Breakdown) -> list[dict[str, Any]]:
             "text": text,
             "median": milliseconds(median),
             "spread": quartiles,
-            "share": percent(median / whole),
+            "share": relative(median / whole),
             "bar": f"{100.0 * max(median / whole, 0.0):.1f}" if inside else "",
         }
 
@@ -123,7 +124,7 @@ def _study_rows(study: LevelStudy) -> list[dict[str, Any]]:
             "cells": [
                 {
                     "time": milliseconds(setting.timing.median),
-                    "error": "finest" if setting is study.finest else percent(study.error(setting)),
+                    "error": "finest" if setting is study.finest else relative(study.error(setting)),
                     "outcome": "" if setting.outcome == "converged" else setting.outcome,
                 }
                 for setting in sorted((s for s in study.settings if s.level == level), key=lambda s: s.order)

@@ -11,6 +11,7 @@ from reports.performance.levels import LevelStudy, Setting
 from reports.performance.parts import Breakdown
 from reports.performance.scaling import PowerLaw, Series, apart
 from reports.performance.timing import Timing
+from reports.verification.wording import relative
 
 # Slopes aimed at: 1 within 10 %; and memory of the process that solves the largest rod, MB.
 SLOPE_TOLERANCE = 0.1
@@ -67,16 +68,6 @@ def spread(timing: Timing) -> str:
     return f"{milliseconds(lower)} to {milliseconds(upper)}"
 
 
-def percent(part: float) -> str:
-    """A share, or an error with its sign, in per cent."""
-    if part == 0.0:
-        return "0"
-    text = f"{100.0 * part:.2g}" if 1e-5 <= abs(part) < 0.1 else f"{100.0 * part:.0f}"
-    if abs(part) < 1e-5:
-        text = f"{100.0 * part:.0e}"
-    return f"{text} %".replace("-", "\u2212")
-
-
 def _digits(value: float, digits: int) -> str:
     return f"{float(f'{value:.{digits}g}'):g}"
 
@@ -131,7 +122,7 @@ def seconds_caption(series: tuple[Series, ...]) -> str:
     slopes = _kinds([(one, _slope(one.time_law)) for one in series])
     of_all = _kinds([(one, _slope(one.time_law_of_all)) for one in series])
     return (
-        f"Aim: slope 1 within {percent(SLOPE_TOLERANCE)}; found {slopes} {_from(series[0].time_law)}, and {of_all} "
+        f"Aim: slope 1 within {relative(SLOPE_TOLERANCE)}; found {slopes} {_from(series[0].time_law)}, and {of_all} "
         f"over all sizes, where what a solve costs whatever its size weighs: {duration(smallest.timing.median)} for "
         f"{smallest.elements} elements, {duration(largest.timing.median)} for {count(largest.elements)}."
     )
@@ -143,7 +134,7 @@ def memory_caption(series: tuple[Series, ...]) -> str:
     slopes = _kinds([(one, f"{_slope(law)} {_from(law)}".strip()) for one, law in laws])
     grown = _kinds([(one, f"{megabytes(one.growth[-1])} MB") for one in series])
     return (
-        f"Aim: slope 1 within {percent(SLOPE_TOLERANCE)}; found {slopes}: {count(series[0].sizes[-1].elements)} "
+        f"Aim: slope 1 within {relative(SLOPE_TOLERANCE)}; found {slopes}: {count(series[0].sizes[-1].elements)} "
         f"elements make the process grow by {grown}, above the {megabytes(series[0].empty)} MB of one that solved a "
         "single element."
     )
@@ -167,8 +158,8 @@ def sizes_note(series: tuple[Series, ...]) -> str:
     runs = [size.timing.runs for one in series for size in one.sizes]
     failed = [size for one in series for size in one.sizes if size.outcome != "converged"]
     agree = (
-        f"The end's deflection is the same to {percent(apart(series))} in all rods of {series[0].fitted_from} elements "
-        "and more."
+        f"The end's deflection is the same to {relative(apart(series))} in all rods of {series[0].fitted_from} "
+        "elements and more."
     )
     outcome = f" {len(failed)} of the solves did not converge." if failed else ""
     return f"Seconds are medians of {min(runs)} to {max(runs)} runs, with their quartiles. {agree}{outcome}"
@@ -180,8 +171,8 @@ def parts_note(breakdown: Breakdown) -> str:
     whole = breakdown.whole.median
     (first, most), (second, next_most) = inside[:2]
     return (
-        f"{first} takes {percent(most.median / whole)} of a solve and {second.lower()} "
-        f"{percent(next_most.median / whole)}; in all it takes {breakdown.contact_solutions} contact "
+        f"{first} takes {relative(most.median / whole)} of a solve and {second.lower()} "
+        f"{relative(next_most.median / whole)}; in all it takes {breakdown.contact_solutions} contact "
         f"solutions. Medians and quartiles of {breakdown.whole.runs} runs, with tables of quadrature and basis "
         f"functions at hand; the first solve in a new process took {duration(breakdown.first)}."
     )
@@ -197,11 +188,11 @@ def levels_caption(study: LevelStudy) -> str:
     finest = study.finest
     against = f"of h{finest.level}, p = {finest.order}, which takes {duration(finest.timing.median)}"
     if not near:
-        return f"No other setting comes within {percent(NEAR)} of the contact force {against}."
+        return f"No other setting comes within {relative(NEAR)} of the contact force {against}."
     cheapest: Setting = min(near, key=lambda setting: setting.timing.median)
     return (
-        f"The cheapest setting within {percent(NEAR)} of the contact force {against}, is h{cheapest.level}, "
-        f"p = {cheapest.order}: {percent(study.error(cheapest))} in {duration(cheapest.timing.median)}."
+        f"The cheapest setting within {relative(NEAR)} of the contact force {against}, is h{cheapest.level}, "
+        f"p = {cheapest.order}: {relative(study.error(cheapest))} in {duration(cheapest.timing.median)}."
     )
 
 
