@@ -140,7 +140,7 @@ class Spline:
 
     Parameters
     ----------
-    points : at least three, global (X, Y, Z), mm, neighbours distinct
+    points : at least three, global (X, Y, Z), mm, neighbours distinct; an array of shape (n, 3) will do
     up : direction whose part normal to the line at its start is e2 there (any length)
     frame : "minimal rotation" moves the frame along without turning it about the tangent; with "up", e2 is the part
         of `up` normal to the tangent everywhere
@@ -151,6 +151,8 @@ class Spline:
     frame: Literal["minimal rotation", "up"] = "minimal rotation"
 
     def __post_init__(self) -> None:
+        # Points often come as an array.
+        object.__setattr__(self, "points", tuple(tuple(map(float, point)) for point in self.points))
         require(len(self.points) >= 3, "points", f"{len(self.points)} points", "a spline needs at least three")
         for number, point in enumerate(self.points, 1):
             require_finite(point, f"points #{number}")

@@ -48,6 +48,10 @@ def test_a_spline_through_points_of_an_arc_gets_its_length_with_the_fourth_power
     assert errors[0] / errors[1] > 16.0
 
 
+def test_points_of_a_spline_may_come_as_an_array():
+    assert Spline(np.array(BENT.points), UP) == BENT
+
+
 def test_a_spline_through_three_points_is_a_parabola():
     parabola = Spline(((-1.0, 1.0, 0.0), (0.0, 0.0, 0.0), (1.0, 1.0, 0.0)), UP)
 
