@@ -28,8 +28,8 @@ EDGE_TOLERANCE = 0.01
 MOST_STEPS = 12
 # Longest step as a part of the zone.
 LONGEST_STEP = 0.1
-# Steps up to this part of a stretch's length are short: slopes change little on them.
-SHORT_STEP = 0.1
+# Steps up to this part of a stretch's length are short, and do what they should if pressures fall to this part.
+SHORT_STEP, FALL = 0.1, 0.3
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,16 +81,17 @@ def find_edges(
         values.append(pressures.value * _lengths(current, edges))
         bracket = bracket.tightened(outward[0] * positions[0], pressures.value[0])
         if jacobian is not None:
-            # A short step tells enough of the slopes to see whether it was the last one (Broyden's formula).
-            change = outward * (positions - tried[-2])
-            jacobian = jacobian + np.outer(values[-1] - values[-2] - jacobian @ change, change) / (change @ change)
-            if (np.abs(change) > SHORT_STEP * _lengths(current, edges)).any():
-                jacobian = None
+            change, before = outward * (positions - tried[-2]), values[-2]
+            # A short step that does what it should leaves slopes that need no more than Broyden's correction.
+            short = (np.abs(change) < SHORT_STEP * _lengths(current, edges)).all()
+            if short and np.abs(values[-1]).max() < FALL * np.abs(before).max():
+                error = values[-1] - before - jacobian @ change
+                jacobian = jacobian + np.outer(error, change) / (change @ change)
             else:
-                new = positions + outward * _step(scene, current, edges, values[-1], jacobian, bracket)
-        if jacobian is None or np.abs(new - positions).max() >= EDGE_TOLERANCE:
+                jacobian = None
+        if jacobian is None:
             jacobian = _jacobian(pressures, current, edges, rates)
-            new = positions + outward * _step(scene, current, edges, values[-1], jacobian, bracket)
+        new = positions + outward * _step(scene, current, edges, values[-1], jacobian, bracket)
         if _out_of_place(scene, moved(stretches, edges, new)):
             outcome = "topology"
         elif np.abs(new - positions).max() < EDGE_TOLERANCE:
