@@ -48,18 +48,21 @@ class LayeredFactor:
         return len(self.border[0])
 
 
-def _cholesky(matrix: Array) -> Array:
+def cholesky(matrix: Array) -> Array:
+    """L of a symmetric matrix L L^T; numpy.linalg.LinAlgError if it is not positive definite."""
     factor, info = dpotrf(matrix, lower=1, clean=1)
     if info != 0:
         raise np.linalg.LinAlgError("the stiffness is not positive definite")
     return np.asarray(factor)
 
 
-def _forward(factor: Array, right_side: Array) -> Array:
+def forward(factor: Array, right_side: Array) -> Array:
+    """L^-1 times the right sides, the columns."""
     return np.asarray(dtrsm(1.0, factor, right_side, lower=1))
 
 
-def _backward(factor: Array, right_side: Array) -> Array:
+def backward(factor: Array, right_side: Array) -> Array:
+    """L^-T times the right sides, the columns."""
     return np.asarray(dtrsm(1.0, factor, right_side, lower=1, trans_a=1))
 
 
@@ -70,8 +73,8 @@ def _condense(blocks: list[list[Array]], clamped: tuple[bool, bool]) -> tuple[Ar
     plane does not couple and gets the identity, so that its displacement is zero under zero force.
     """
     size = len(blocks[1][1])
-    factor = _cholesky(blocks[1][1])
-    coupling = _forward(factor, np.concatenate([blocks[1][0], blocks[1][2]], axis=1))
+    factor = cholesky(blocks[1][1])
+    coupling = forward(factor, np.concatenate([blocks[1][0], blocks[1][2]], axis=1))
     for position, is_clamped in enumerate(clamped):
         if is_clamped:
             coupling[:, position * size : (position + 1) * size] = 0.0
@@ -118,12 +121,12 @@ def factorise(
     carried = np.zeros((size, size))
     for which in kind:
         block = condensed[which]
-        factor = _cholesky(block[:size, :size] + carried)
-        coupling = _forward(factor, block[:size, size:])
+        factor = cholesky(block[:size, :size] + carried)
+        coupling = forward(factor, block[:size, size:])
         carried = block[size:, size:] - coupling.T @ coupling
         border.append(factor)
         border_coupling.append(coupling)
-    border.append(_cholesky(carried))
+    border.append(cholesky(carried))
     return LayeredFactor(
         reverse,
         kind.astype(np.int64),
@@ -144,17 +147,17 @@ def solve(factor: LayeredFactor, force: Array) -> Array:
     for layer, which in enumerate(factor.kind):
         start, inside, end = 2 * layer, 2 * layer + 1, 2 * layer + 2
         coupling = factor.middle_coupling[which]
-        state[inside] = _forward(factor.middle[which], state[inside])
+        state[inside] = forward(factor.middle[which], state[inside])
         reduced = coupling.T @ state[inside]
-        state[start] = _forward(factor.border[layer], state[start] - reduced[:size])
+        state[start] = forward(factor.border[layer], state[start] - reduced[:size])
         state[end] -= reduced[size:] + factor.border_coupling[layer].T @ state[start]
-    state[-1] = _backward(factor.border[-1], _forward(factor.border[-1], state[-1]))
+    state[-1] = backward(factor.border[-1], forward(factor.border[-1], state[-1]))
     for layer in range(len(factor.kind) - 1, -1, -1):
         which = factor.kind[layer]
         start, inside, end = 2 * layer, 2 * layer + 1, 2 * layer + 2
-        state[start] = _backward(factor.border[layer], state[start] - factor.border_coupling[layer] @ state[end])
+        state[start] = backward(factor.border[layer], state[start] - factor.border_coupling[layer] @ state[end])
         borders = np.concatenate([state[start], state[end]])
-        state[inside] = _backward(factor.middle[which], state[inside] - factor.middle_coupling[which] @ borders)
+        state[inside] = backward(factor.middle[which], state[inside] - factor.middle_coupling[which] @ borders)
     result = state[:, :, 0]
     return result[::-1].copy() if factor.reverse else result
 
@@ -197,17 +200,17 @@ def compliance(factor: LayeredFactor, forces: csc_array) -> Array:
         inside = loads[(2 * layer + 1) * size : (2 * layer + 2) * size]
         columns = np.unique(inside.indices)
         if len(columns):
-            state = _forward(factor.middle[which], inside[:, columns].toarray())
+            state = forward(factor.middle[which], inside[:, columns].toarray())
             reduced = factor.middle_coupling[which].T @ state
             start[:, columns] -= reduced[:size]
             carried[:, columns] -= reduced[size:]
             result[np.ix_(columns, columns)] += state.T @ state
-        state = _forward(factor.border[layer], start)
+        state = forward(factor.border[layer], start)
         carried -= factor.border_coupling[layer].T @ state
         result[:active, :active] += state.T @ state
     last = _rows(loads, planes - 1, size, count)
     last[:, : carried.shape[1]] += carried
-    state = _forward(factor.border[-1], last)
+    state = forward(factor.border[-1], last)
     result += state.T @ state
     return np.asarray(result[np.ix_(rank, rank)])
 

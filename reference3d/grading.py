@@ -33,6 +33,8 @@ GROWTH = 0.5  # increase of the cell length per distance
 # elements get finer towards the border of the section, where clamps make the stress singular: the fraction by
 # which their size there is below the mean (in the limit of many)
 SECTION_GRADING = 0.7
+# places at which the lengths of cells are added up along a segment
+SAMPLES = 2001
 
 
 @dataclass(frozen=True)
@@ -95,8 +97,8 @@ def rod_borders(scene: Scene, rod: Rod, refinement: int, symmetric: bool) -> Bor
             zones.append(_Zone(*opposite[0], ZONE_CELL * smaller))
             across["x" if face.face in ("top", "bottom") else "y"] += opposite[1]
     return Borders(
-        x=_across(section.width, across["x"], side, refinement, symmetric),
-        y=_across(section.height, across["y"], side, refinement, False),
+        x=across_borders(section.width, across["x"], side, refinement, symmetric),
+        y=across_borders(section.height, across["y"], side, refinement, False),
         s=_along(breaks, zones, LARGEST_CELL * side, refinement),
     )
 
@@ -106,14 +108,17 @@ def _along(breaks: dict[float, float], zones: list[_Zone], largest: float, refin
     parts = [np.array(places[:1])]
     for start, end in pairwise(places):
         middle = 0.5 * (start + end)
-        cap = min([zone.size for zone in zones if zone.start < middle < zone.end], default=largest)
-        parts.append(_segment(start, end, breaks[start], breaks[end], cap, refinement)[1:])
+        cap = np.full(SAMPLES, min([zone.size for zone in zones if zone.start < middle < zone.end], default=largest))
+        parts.append(segment_borders(start, end, breaks[start], breaks[end], cap, refinement)[1:])
     return np.concatenate(parts)
 
 
-def _segment(start: float, end: float, at_start: float, at_end: float, cap: float, refinement: int) -> Array:
-    """Borders of one segment: cell length min(at_start + g d, at_end + g d', cap), rounded down to fit."""
-    place = np.linspace(start, end, 2001)
+def segment_borders(start: float, end: float, at_start: float, at_end: float, cap: Array, refinement: int) -> Array:
+    """Borders of one segment: cell length min(at_start + g d, at_end + g d', cap), rounded down to fit, mm.
+
+    cap : at SAMPLES even places from start to end, shape (SAMPLES,)
+    """
+    place = np.linspace(start, end, SAMPLES)
     size = np.minimum(np.minimum(at_start + GROWTH * (place - start), at_end + GROWTH * (end - place)), cap)
     density = 1.0 / size
     count = np.concatenate([[0.0], np.cumsum(0.5 * (density[1:] + density[:-1]) * np.diff(place))])
@@ -129,8 +134,15 @@ def _divide(borders: Array, parts: int) -> Array:
     return np.asarray(np.interp(at, np.arange(len(borders)), borders))
 
 
-def _across(extent: float, inner: list[float], side: float, refinement: int, half: bool) -> Array:
-    """Borders over a width or height, one of them in the middle and one at each border of contact."""
+def across_borders(extent: float, inner: list[float], side: float, refinement: int, half: bool) -> Array:
+    """Borders over a width or height, mm, one of them in the middle and one at each border of contact.
+
+    Parameters
+    ----------
+    inner : borders of contact
+    side : smaller side of the section
+    half : only those of the half with positive coordinates
+    """
     size = max(SECTION_CELL * side, extent / MOST_ACROSS)
     candidates = sorted([-0.5 * extent, 0.0, 0.5 * extent, *inner])
     places = [candidates[0]]

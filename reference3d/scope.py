@@ -1,5 +1,6 @@
-"""What the 3D reference can mesh, hold and load so far: straight, untwisted rods of rectangular section, clamped and
-under forces.
+"""What scenes with contact may hold so far: straight, untwisted rods of rectangular section, clamped and under forces.
+
+Scenes without contact may hold anything.
 """
 
 from __future__ import annotations
@@ -21,7 +22,7 @@ from cases.scene import (
     SectionMoment,
 )
 
-INSTEAD = "yet; use --model rod"
+INSTEAD = "in scenes with contact yet; use --model rod"
 
 # What a load is called that is not a force, and what keeps it from being taken.
 _OTHER_LOADS: dict[type[Load], tuple[str, str]] = {
@@ -32,7 +33,7 @@ _OTHER_LOADS: dict[type[Load], tuple[str, str]] = {
 
 
 def require_treatable(scene: Scene) -> None:
-    """Refuse what cannot be meshed, held or loaded.
+    """Refuse what cannot be meshed, held or loaded where there is contact.
 
     Raises
     ------
@@ -78,7 +79,7 @@ def isotropic(rod: Rod) -> Material:
     """The material of a rod, seen to be isotropic; SceneError if it is not."""
     if isinstance(rod.material, Material):
         return rod.material
-    remedy = f"the 3D reference knows isotropic materials alone {INSTEAD}"
+    remedy = f"the 3D reference takes no other than isotropic materials {INSTEAD}"
     raise SceneError(f"rods.{rod.name}.material", "an orthotropic material", remedy)
 
 
@@ -87,7 +88,7 @@ def clamps(scene: Scene) -> tuple[Clamp, ...]:
     found: list[Clamp] = []
     for number, support in enumerate(scene.supports, 1):
         if not isinstance(support, Clamp):
-            remedy = f"the 3D reference holds whole end sections alone {INSTEAD}"
+            remedy = f"the 3D reference holds nothing but whole end sections {INSTEAD}"
             raise SceneError(f"supports #{number}.kind", "a support of components", remedy)
         for key, motion in (("displacement", support.displacement), ("rotation", support.rotation)):
             if any(motion):

@@ -1,5 +1,8 @@
 """Solve a scene as a 3D solid: each rod's stiffness factorised once, contact in compliance form.
 
+Straight, clamped bars of rectangular section under forces, in contact or not, are solved here; all other scenes,
+which have no contact so far, by `solid_solver`.
+
 Contact is located on the coarsest mesh; on finer ones compliance is computed for the nodes near it, and every
 other node is seen to be open afterwards.
 """
@@ -12,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csc_array, hstack
 
-from cases.scene import ContactPair, Rod, Scene, SceneError
+from cases.scene import ContactPair, Material, Rod, Scene, SceneError
 from reference3d.body import Body, discretise
 from reference3d.contact import ContactNodes, contact_nodes, near_contact, solve_complementarity, solve_nested
 from reference3d.factor import compliance
@@ -20,7 +23,9 @@ from reference3d.factor import solve as solve_layers
 from reference3d.field import Field, mirrored
 from reference3d.frames import is_symmetric, rod_frame
 from reference3d.quadratic import line_nodes
-from reference3d.scope import clamps, isotropic, rectangle, require_treatable
+from reference3d.scope import clamps, rectangle, require_treatable
+from reference3d.solid_solution import SolidSolution
+from reference3d.solid_solver import solve_solid
 from reference3d.solution import Cost, PairResult, RodResult, Solution
 
 Array = NDArray[np.float64]
@@ -39,34 +44,42 @@ GAP_TOLERANCE = 1e-6
 PENALTY_SHARE = 1e-3
 
 
-def solve(scene: Scene, refinement: int = DEFAULT_REFINEMENT, located: Solution | None = None) -> Solution:
+def solve(
+    scene: Scene, refinement: int = DEFAULT_REFINEMENT, located: Solution | None = None
+) -> Solution | SolidSolution:
     """Solve a scene as a 3D solid.
 
     Parameters
     ----------
     refinement : k, elements along each axis of a coarse cell (`grading`); unknowns grow with its third power
     located : solution of the same scene on a coarser mesh, if there is one, which shows where contact is;
-        solved here on the coarsest mesh if there is none
+        solved here on the coarsest mesh if there is none; without contact it has no use
 
     Raises
     ------
     SceneError
-        if the scene is outside what this solver treats: what `scope` refuses, a rod without a clamp, a Poisson's
-        ratio next to 0.5, rods in contact that are not parallel, faces of a pair that are not.
+        if the scene is outside what this solver treats: contact with what `scope` refuses, of rods without a clamp
+        or that are not parallel, of faces that are not; a rod that is not held; a Poisson's ratio next to 0.5.
     ValueError
         if `refinement` is below 1.
     """
     if refinement < 1:
         raise ValueError(f"refinement: found {refinement}; a whole number of at least 1 is needed")
+    _require_compressible(scene)
+    if not scene.contacts and not _is_clamped_bars(scene):
+        return solve_solid(scene, refinement)
+    return _solve_bars(scene, refinement, located)
+
+
+def _solve_bars(scene: Scene, refinement: int, located: Solution | None) -> Solution:
     require_treatable(scene)
     _require_support(scene)
-    _require_compressible(scene)
     begin = time.perf_counter()
     symmetric = is_symmetric(scene)
     # contact is located on the coarsest mesh, so that compliance is computed only where it is needed
     steps = 0
     if located is None and refinement > 1 and scene.contacts:
-        located = solve(scene, 1)
+        located = _solve_bars(scene, 1, None)
         steps = located.contact_solutions
     bodies = {rod.name: discretise(scene, rod, refinement, symmetric) for rod in scene.rods}
     borders = {name: body.borders for name, body in bodies.items()}
@@ -85,6 +98,15 @@ def solve(scene: Scene, refinement: int = DEFAULT_REFINEMENT, located: Solution 
     return _collect(scene, refinement, symmetric, bodies, nodes, forces, gaps, fields, outcome, steps, (begin, ready))
 
 
+def _is_clamped_bars(scene: Scene) -> bool:
+    try:
+        require_treatable(scene)
+        _require_support(scene)
+    except SceneError:
+        return False
+    return True
+
+
 def _require_support(scene: Scene) -> None:
     clamped = {clamp.rod for clamp in clamps(scene)}
     for rod in scene.rods:
@@ -97,7 +119,7 @@ def _require_support(scene: Scene) -> None:
 
 def _require_compressible(scene: Scene) -> None:
     for rod in scene.rods:
-        ratio = isotropic(rod).poisson_ratio
+        ratio = rod.material.poisson_ratio if isinstance(rod.material, Material) else 0.0
         if ratio > LARGEST_POISSON_RATIO:
             remedy = f"the displacements of the 3D reference need at most {LARGEST_POISSON_RATIO:g}"
             raise SceneError(f"rods.{rod.name}.material.poisson_ratio", f"{ratio:.10g}", remedy)

@@ -1,4 +1,4 @@
-"""What the 3D reference refuses up front, and line loads as the one kind of distributed force that it takes."""
+"""What the 3D reference refuses where there is contact, and line loads as the one distributed force it takes there."""
 
 import math
 from dataclasses import replace
@@ -16,10 +16,12 @@ from cases.scene import (
     Joint,
     Line,
     LineLoad,
+    Material,
     Orthotropic,
     Polygon,
     Pressure,
     Ring,
+    Rod,
     RodEnd,
     RodFace,
     SceneError,
@@ -29,69 +31,63 @@ from cases.scene import (
 )
 from reference3d.solver import solve
 
+STRAIGHT = Line((0.0, 0.0, 90.0), (60.0, 0.0, 90.0), (0.0, 1.0, 0.0))
 ARC = Helix((100.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, 1.0), math.pi / 2.0, (0.0, 0.0, 1.0))
 TRIANGLE = Polygon(((0.0, 0.0), (9.0, 0.0), (0.0, 9.0)))
+STEEL = Material(200000.0, 0.3, 7.85e-9)
+WOOD = Orthotropic((900.0, 500.0, 12000.0), (700.0, 800.0, 60.0), (0.4, 0.03, 0.02))
 
 
-def changed(scene, **changes):
-    """The scene with its one rod changed."""
-    rod = replace(scene.rods[0], **changes)
-    return replace(scene, rods=(replace(rod, element_borders=(0.0, rod.centre_line.length)),), loads=())
+def with_third_rod(scene, **changes):
+    """A scene with contact and a third rod aside, clamped at its start."""
+    fields = {"name": "third", "centre_line": STRAIGHT, "section": Circle(5.0), "material": STEEL, **changes}
+    rod = Rod(**fields, element_borders=(0.0, fields["centre_line"].length))
+    return replace(scene, rods=(*scene.rods, rod), supports=(*scene.supports, Clamp("third", "start")))
 
 
 @pytest.mark.parametrize(
     ("changes", "key", "found"),
     [
-        ({"section": Circle(15.0)}, "rods.rod.section", "a circle"),
-        ({"section": Ring(15.0, 10.0)}, "rods.rod.section", "a ring"),
-        ({"section": Box(15.0, 15.0, 2.0)}, "rods.rod.section", "a box"),
-        ({"section": TRIANGLE}, "rods.rod.section", "a polygon"),
-        ({"centre_line": ARC, "element_borders": (0.0, ARC.length)}, "rods.rod.centre_line", "an arc"),
-        (
-            {"centre_line": replace(ARC, pitch=3.0), "element_borders": (0.0, replace(ARC, pitch=3.0).length)},
-            "rods.rod.centre_line",
-            "a helix",
-        ),
-        (
-            {"centre_line": Line((0.0, 0.0, 0.0), (300.0, 0.0, 0.0), (0.0, 1.0, 0.0), 0.1)},
-            "rods.rod.centre_line",
-            "a twisted line",
-        ),
+        ({"section": Circle(15.0)}, "section", "a circle"),
+        ({"section": Ring(15.0, 10.0)}, "section", "a ring"),
+        ({"section": Box(15.0, 15.0, 2.0)}, "section", "a box"),
+        ({"section": TRIANGLE}, "section", "a polygon"),
+        ({"centre_line": ARC}, "centre_line", "an arc"),
+        ({"centre_line": replace(ARC, pitch=3.0)}, "centre_line", "a helix"),
+        ({"centre_line": replace(STRAIGHT, twist=0.1)}, "centre_line", "a twisted line"),
     ],
 )
-def test_what_is_not_meshed_yet_is_refused_with_the_way_out(cantilever, changes, key, found):
-    scene = changed(cantilever((0.0, -100.0, 0.0)), **changes)
-
+def test_what_is_not_meshed_where_there_is_contact_is_refused_with_the_way_out(two_cantilevers, changes, key, found):
     with pytest.raises(SceneError) as caught:
-        solve(scene)
+        solve(with_third_rod(two_cantilevers(50000.0, 0.0), **changes))
 
-    assert (caught.value.key, caught.value.found) == (key, found)
+    assert (caught.value.key, caught.value.found) == (f"rods.third.{key}", found)
     assert "does not mesh" in caught.value.remedy
-    assert "use --model rod" in caught.value.remedy
+    assert "in scenes with contact yet; use --model rod" in caught.value.remedy
 
 
-def test_an_orthotropic_rod_is_refused(cantilever):
-    wood = Orthotropic((900.0, 500.0, 12000.0), (700.0, 800.0, 60.0), (0.4, 0.03, 0.02))
+def test_an_orthotropic_rod_is_refused_where_there_is_contact(two_cantilevers):
+    scene = two_cantilevers(50000.0, 0.0)
+    scene = replace(scene, rods=(scene.rods[0], replace(scene.rods[1], material=WOOD)))
 
-    with pytest.raises(SceneError, match=r"rods\.rod\.material: found an orthotropic material; .* use --model rod"):
-        solve(changed(cantilever((0.0, -100.0, 0.0)), material=wood))
+    with pytest.raises(SceneError, match=r"rods\.upper\.material: found an orthotropic material; .* use --model rod"):
+        solve(scene)
 
 
 @pytest.mark.parametrize(
     ("load", "found"),
     [
-        (SectionMoment("rod", 300.0, (0.0, 0.0, 10.0)), "a section moment"),
-        (Pressure(RodFace("rod", "top"), 0.0, 300.0, 0.1), "a pressure"),
-        (Gravity("rod", (0.0, -9810.0, 0.0)), "gravity"),
+        (SectionMoment("lower", 300.0, (0.0, 0.0, 10.0)), "a section moment"),
+        (Pressure(RodFace("lower", "top"), 0.0, 100.0, 0.1), "a pressure"),
+        (Gravity("lower", (0.0, -9810.0, 0.0)), "gravity"),
     ],
 )
-def test_other_loads_than_forces_are_refused_and_not_left_out(cantilever, load, found):
-    scene = cantilever((0.0, -100.0, 0.0))
-    rod = replace(scene.rods[0], material=replace(scene.rods[0].material, density=7.85e-9))
-    scene = replace(scene, rods=(rod,), loads=(*scene.loads, load))
+def test_other_loads_than_forces_are_refused_where_there_is_contact(two_cantilevers, load, found):
+    scene = two_cantilevers(50000.0, 0.0)
+    rods = (replace(scene.rods[0], material=STEEL), scene.rods[1])
 
     with pytest.raises(SceneError) as caught:
-        solve(scene)
+        solve(replace(scene, rods=rods, loads=(*scene.loads, load)))
 
     assert (caught.value.key, caught.value.found) == ("loads #2.kind", found)
     assert "use --model rod" in caught.value.remedy
@@ -100,13 +96,13 @@ def test_other_loads_than_forces_are_refused_and_not_left_out(cantilever, load, 
 @pytest.mark.parametrize(
     ("support", "key"),
     [
-        (Support("rod", 300.0, ("y",)), "supports #2.kind"),
-        (Clamp("rod", "end", displacement=(0.0, 0.5, 0.0)), "supports #2.displacement"),
-        (Clamp("rod", "end", rotation=(0.0, 0.0, 0.01)), "supports #2.rotation"),
+        (Support("lower", 300.0, ("y",)), "supports #3.kind"),
+        (Clamp("lower", "end", displacement=(0.0, 0.5, 0.0)), "supports #3.displacement"),
+        (Clamp("lower", "end", rotation=(0.0, 0.0, 0.01)), "supports #3.rotation"),
     ],
 )
-def test_other_supports_than_clamps_at_rest_are_refused(cantilever, support, key):
-    scene = cantilever((0.0, -100.0, 0.0))
+def test_other_supports_than_clamps_at_rest_are_refused_where_there_is_contact(two_cantilevers, support, key):
+    scene = two_cantilevers(50000.0, 0.0)
 
     with pytest.raises(SceneError, match=r"use --model rod") as caught:
         solve(replace(scene, supports=(*scene.supports, support)))
@@ -114,22 +110,29 @@ def test_other_supports_than_clamps_at_rest_are_refused(cantilever, support, key
     assert caught.value.key == key
 
 
-def test_joints_are_refused(cantilever):
-    scene = cantilever((0.0, -100.0, 0.0))
-    beyond = Line((300.0, 0.0, 0.0), (600.0, 0.0, 0.0), (0.0, 1.0, 0.0))
-    other = replace(scene.rods[0], name="other", centre_line=beyond)
-    joint = Joint((RodEnd("rod", "end"), RodEnd("other", "start")))
+def test_joints_are_refused_where_there_is_contact(two_cantilevers):
+    beyond = Line((300.0, 0.0, 0.0), (300.0, 0.0, 60.0), (0.0, 1.0, 0.0))
+    scene = with_third_rod(two_cantilevers(50000.0, 0.0), centre_line=beyond)
+    joint = Joint((RodEnd("lower", "end"), RodEnd("third", "start")))
 
-    with pytest.raises(SceneError, match=r"joints: found 1; the 3D reference does not join rods yet; use --model rod"):
-        solve(replace(scene, rods=(scene.rods[0], other), joints=(joint,)))
+    with pytest.raises(
+        SceneError, match=r"joints: found 1; the 3D reference does not join rods in scenes with contact"
+    ):
+        solve(
+            replace(
+                scene,
+                rods=(*scene.rods[:2], replace(scene.rods[2], section=scene.rods[0].section)),
+                supports=scene.supports[:2],
+                joints=(joint,),
+            )
+        )
 
 
-def test_beds_are_refused(cantilever):
-    scene = cantilever((0.0, -100.0, 0.0))
-    bed = Bed(RodFace("rod", "bottom"), 0.0, 300.0, 1.0)
+def test_beds_are_refused_where_there_is_contact(two_cantilevers):
+    bed = Bed(RodFace("lower", "bottom"), 0.0, 300.0, 1.0)
 
     with pytest.raises(SceneError, match=r"beds: found 1; the 3D reference does not lay .* use --model rod"):
-        solve(replace(scene, beds=(bed,)))
+        solve(replace(two_cantilevers(50000.0, 0.0), beds=(bed,)))
 
 
 def test_there_are_reactions_at_the_ends_alone(cantilever):
