@@ -135,8 +135,13 @@ class AssembledRod:
         return index, (2.0 * station - left - right) / (right - left)
 
 
-def assembled_rod(scene: Scene, rod: Rod, mirrors: Mirrors, mesh: RodMesh, store: ElementStore) -> AssembledRod:
-    """Make (or fetch from `store`) the elements of the mesh and factorise the chain."""
+def assembled_rod(
+    scene: Scene, rod: Rod, mirrors: Mirrors, mesh: RodMesh, store: ElementStore, stays: Sequence[Held] = ()
+) -> AssembledRod:
+    """Make (or fetch from `store`) the elements of the mesh and factorise the chain.
+
+    stays : sections held beside those that the scene says
+    """
     turnings, under = constant_turnings(rod.centre_line, mesh.borders), springs_under(scene, rod, mesh.borders)
     elements = tuple(
         store.element(rod, turning, springs, Fields(int(level), *mirrors), int(order), ends)
@@ -146,7 +151,7 @@ def assembled_rod(scene: Scene, rod: Rod, mirrors: Mirrors, mesh: RodMesh, store
     )
     fields = node_fields(elements)
     holds = {}
-    for held in held_sections(scene, rod):
+    for held in (*held_sections(scene, rod), *stays):
         node = int(np.abs(mesh.borders - held.station).argmin())
         if abs(mesh.borders[node] - held.station) > SAME_BORDER:
             raise ValueError(f"rod '{rod.name}': no element border at the support at {held.station:g} mm")

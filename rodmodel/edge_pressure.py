@@ -19,7 +19,7 @@ from cases.scene import Rod, SectionForce, SectionMoment
 from rodmodel.assembly import AssembledRod
 from rodmodel.axial import shape_function_slopes
 from rodmodel.borders import Edge, Rates
-from rodmodel.contact import forces_on
+from rodmodel.contact import ActiveSet
 from rodmodel.loads import load_parts
 from rodmodel.mesh import SAME_BORDER
 from rodmodel.pairing import facing_points, opposite_stations
@@ -43,28 +43,31 @@ class EdgePressures:
     ----------
     value : in the middle of the width, MPa, shape (n_edges,)
     points : contact points at the edges in the middle of the width, shape (n_edges,)
-    force : at the contact points of the system, N, shape (n,)
-    adjoint : by how much a force at a point would raise each pressure, MPa/mm, shape (n, n_edges)
+    force, motion : at the contact points of the system, N, shape (n,), and of loose rods, shape (n_motions,)
+    adjoint, adjoint_motion : by how much a force at a point would raise each pressure, MPa/mm, shape (n, n_edges), and
+        the motions that go with it, shape (n_motions, n_edges)
     """
 
     system: ContactSystem
     value: Array
     points: IntArray
     force: Array
+    motion: Array
     adjoint: Array
+    adjoint_motion: Array
 
 
 def edge_pressures(system: ContactSystem, stretches: Sequence[Stretch], edges: Sequence[Edge]) -> EdgePressures:
     """Pressures in the middle of the width at each edge while the stretches are held, pulling or pushing."""
-    held = np.zeros(len(system.spring), dtype=bool)
+    problem = system.problem
+    held = np.zeros(len(problem.gap), dtype=bool)
     for stretch in stretches:
         grid = system.grids[stretch.pair]
         middles = 0.5 * (grid.station[:, 0] + grid.station[:, -1])
         inside = (middles > stretch.start) & (middles < stretch.end)
         part = held[system.points[stretch.pair]].reshape(grid.weight.shape)
         part[inside] = True
-    right = np.zeros((len(held), 1 + len(edges)))
-    right[:, 0] = system.initial_gap
+    right = np.zeros((len(held), len(edges)))
     chosen = np.empty(len(edges), dtype=np.int64)
     for number, edge in enumerate(edges):
         grid, stretch = system.grids[edge.pair], stretches[edge.stretch]
@@ -72,18 +75,22 @@ def edge_pressures(system: ContactSystem, stretches: Sequence[Stretch], edges: S
         interval = int(np.abs(grid.station[:, side] - border).argmin())
         point = (interval, side % grid.station.shape[1], grid.middle)
         chosen[number] = system.points[edge.pair].start + np.ravel_multi_index(point, grid.weight.shape)
-        right[chosen[number], 1 + number] = -1.0 / grid.weight[point]
-    solved = forces_on(held, system.compliance, right, system.spring)
-    force, adjoint = solved[:, 0], solved[:, 1:]
-    value = -right[chosen, 1 + np.arange(len(edges))] * force[chosen]
-    return EdgePressures(system, value, chosen, force, adjoint)
+        right[chosen[number], number] = -1.0 / grid.weight[point]
+    joined = ActiveSet(held, problem)
+    force, motion = joined.settled_forces()
+    adjoint, adjoint_motion = joined.settled(right, np.zeros((len(problem.motion_load), len(edges))))
+    value = -right[chosen, np.arange(len(edges))] * force[chosen]
+    return EdgePressures(system, value, chosen, force, motion, adjoint, adjoint_motion)
 
 
 def edge_slopes(pressures: EdgePressures, edges: Sequence[Edge], rates: Mapping[str, Rates]) -> Array:
     """Derivatives of the pressures (rows) by the edges' positions (columns), MPa/mm, shape (n_edges, n_edges)."""
     system = pressures.system
-    loaded = system.states(pressures.force)
-    adjoint = [system.states(pressures.force + one) for one in pressures.adjoint.T]
+    loaded = system.states(pressures.force, pressures.motion)
+    adjoint = [
+        system.states(pressures.force + force, pressures.motion + motion)
+        for force, motion in zip(pressures.adjoint.T, pressures.adjoint_motion.T, strict=True)
+    ]
     moving = {pair: _station_rates(system, pair, rates) for pair in system.grids}
     slopes = np.zeros((len(edges), len(edges)))
     for name, rod in system.rods.items():
@@ -110,7 +117,8 @@ def edge_slopes(pressures: EdgePressures, edges: Sequence[Edge], rates: Mapping[
         # Growth of every interval, and with it of its points' shares of the face, 1/mm, shape (n_edges, n_points).
         growth = (moving[pair][:, :, -1] - moving[pair][:, :, 0]) / (grid.station[:, -1] - grid.station[:, 0])
         of_points = np.repeat(growth, grid.weight[0].size, axis=1)
-        penetration = pressures.force[points] / system.spring[points]
+        problem = system.problem
+        penetration = np.where(problem.rigid[points], 0.0, pressures.force[points] / problem.spring[points])
         slopes += pressures.adjoint[points].T @ (of_points * penetration).T
         mine = [number for number, edge in enumerate(edges) if edge.pair == pair]
         slopes[mine] -= pressures.value[mine, None] * of_points[:, pressures.points[mine] - points.start].T

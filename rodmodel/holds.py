@@ -44,8 +44,8 @@ class Hold:
     ----------
     free : of its fields
     given : coefficients of all fields that the support prescribes, shape (n_fields,)
-    motions : unit motions along and about global X, Y, Z of the joint that the node takes part in, as the section's
-        fields, shape (6, n_fields); no rows elsewhere
+    motions : unit motions along and about global X, Y, Z of the joint that the node takes part in, or the free motions
+        that it follows, as the section's fields, shape (n_motions, n_fields); no rows elsewhere
     """
 
     free: Free
@@ -59,11 +59,30 @@ class Held:
 
     Attributes
     ----------
-    by : its support, or the joint that it takes part in
+    by : its support, the joint that it takes part in, or the free motions of a loose rod that it follows
     """
 
     station: float
-    by: Clamp | Support | Joint
+    by: Clamp | Support | Joint | FreeMotions
+
+
+@dataclass(frozen=True, eq=False)
+class FreeMotions:
+    """Rigid motions that nothing but contact resists.
+
+    Attributes
+    ----------
+    centre : point that the motions displace, mm, shape (3,)
+    motions : displacement of the centre and rotation, rows, shape (n_motions, 6)
+    """
+
+    centre: Array
+    motions: Array
+
+    def at(self, point: Array) -> Array:
+        """Displacement of a point (mm, shape (3,)) and rotation in each motion, shape (n_motions, 6)."""
+        turned = np.cross(self.motions[:, 3:], point - self.centre)
+        return np.concatenate([self.motions[:, :3] + turned, self.motions[:, 3:]], axis=1)
 
 
 def held_sections(scene: Scene, rod: Rod) -> tuple[Held, ...]:
@@ -84,9 +103,16 @@ def hold(scene: Scene, rod: Rod, held: Held, fields: Fields) -> Hold:
         case Joint():
             motions = _global_motions(rod, held.station, fields)
             # Turned about the joint's point, a centre beside it (by round-off of what was written) moves along.
-            arm = centre_points(rod.centre_line, np.array([held.station]))[:, 0] - _joint_point(scene, held.by)
+            arm = centre_points(rod.centre_line, np.array([held.station]))[:, 0] - joint_point(scene, held.by)
             motions[3:] += np.cross(np.eye(3), arm) @ motions[:3]
             return Hold(all_held, at_rest, motions)
+        case FreeMotions():
+            # The section's mean follows the motions; it is held as far as they go, and free to deform.
+            point = centre_points(rod.centre_line, np.array([held.station]))[:, 0]
+            motions = held.by.at(point) @ _global_motions(rod, held.station, fields)
+            axes = frames(rod.centre_line, np.array([held.station]))[0]
+            means = np.concatenate([axes.T @ even_traction(fields), axes.T @ linear_traction(rod.section, fields)])
+            return Hold(_complement(held.by.at(point) @ means), at_rest, motions)
         case Support(of="section"):
             return Hold(*_component_hold(held.by, fields), none)
         case Support():
@@ -100,7 +126,8 @@ def _global_motions(rod: Rod, station: float, fields: Fields) -> Array:
     return np.concatenate([axes.T @ local[:3], axes.T @ local[3:]])
 
 
-def _joint_point(scene: Scene, joint: Joint) -> Array:
+def joint_point(scene: Scene, joint: Joint) -> Array:
+    """Where a joint is, mm, shape (3,)."""
     first = joint.ends[0]
     line = scene.rod(first.rod).centre_line
     return np.asarray(line.end_points[ENDS.index(first.end)])
@@ -127,8 +154,13 @@ def _mean_hold(rod: Rod, support: Support, fields: Fields) -> tuple[Free, Array]
     given = np.linalg.pinv(rows) @ np.array([wanted[component] for component in held])
     if not any(component.startswith("turn") for component in held):
         return np.flatnonzero(~rows.any(axis=0)), given
+    return _complement(rows), given
+
+
+def _complement(rows: Array) -> Array:
+    """Orthonormal combinations of fields, columns, on which linearly independent rows vanish."""
     basis = np.linalg.qr(rows.T, mode="complete").Q
-    return np.ascontiguousarray(basis[:, len(rows) :]), given
+    return np.ascontiguousarray(basis[:, len(rows) :])
 
 
 def restricted(values: Array, free: Free) -> Array:

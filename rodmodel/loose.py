@@ -1,8 +1,8 @@
-"""Whether supports, joints and beds hold every rod: a rigid motion that none resists makes the stiffness singular."""
+"""Rods that supports, joints and beds leave loose: rigid motions that none of them resists."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,8 +11,9 @@ from cases.scene import COMPONENTS, Bed, Joint, Rod, Scene, SceneError, Support
 from rodmodel.assembly import Mirrors
 from rodmodel.centre_line import centre_points, frames, turning_at
 from rodmodel.face import face_strip
-from rodmodel.holds import held_sections
-from rodmodel.joints import symmetric_motions
+from rodmodel.holds import FreeMotions, Held, held_sections
+from rodmodel.joints import Loose, symmetric_motions
+from rodmodel.mesh import SAME_BORDER
 
 Array = NDArray[np.float64]
 
@@ -20,15 +21,17 @@ Array = NDArray[np.float64]
 FREE = 1e-9
 
 
-def require_held(scene: Scene, mirrors: Mapping[str, Mirrors]) -> None:
-    """See that no rod, with those joined to it, can move unresisted in any way that the scene's symmetry leaves.
+def loose_rods(scene: Scene, mirrors: Mapping[str, Mirrors]) -> tuple[Loose, ...]:
+    """Rods, with those joined to them, that can move unresisted in ways that the scene's symmetry leaves.
 
     Raises
     ------
     SceneError
-        if one can; it names the rods and the motion.
+        if one can that no contact could hold; it names the rods and the motion.
     """
     motions = symmetric_motions(scene, mirrors)
+    touched = {side.rod for pair in scene.contacts for side in (pair.first, pair.second)}
+    result = []
     for rods in _structures(scene):
         centre = np.mean([np.mean(rod.centre_line.end_points, axis=0) for rod in rods], axis=0)
         size = max(rod.length for rod in rods)
@@ -40,9 +43,31 @@ def require_held(scene: Scene, mirrors: Mapping[str, Mirrors]) -> None:
         rank = int((values > FREE * values.max(initial=0.0)).sum())
         if rank == len(motions):
             continue
-        names = ", ".join(f"'{rod.name}'" for rod in rods)
-        found = f"nothing that holds {names} against {_in_words(motions.T @ vectors[rank:].T, centre, size)}"
-        raise SceneError("supports", found, "hold it by supports, joints or beds, or its stiffness is singular")
+        free = vectors[rank:] @ motions
+        names = tuple(rod.name for rod in rods)
+        if not touched & set(names):
+            found = f"nothing that holds {_listed(names)} against {_in_words(free.T, centre, size)}"
+            remedy = "hold it by supports, joints, beds or contact, or its stiffness is singular"
+            raise SceneError("supports", found, remedy)
+        freely = FreeMotions(centre, free * scale)
+        stay = _stay(scene, rods[0], freely) if len(rods) == 1 else None
+        result.append(Loose(names, freely, stay))
+    return tuple(result)
+
+
+def _stay(scene: Scene, rod: Rod, free: FreeMotions) -> Held:
+    """A section of a loose rod that nothing holds yet: an end, else an element border between."""
+    taken = [held.station for held in held_sections(scene, rod)]
+    ends_first = (rod.element_borders[0], rod.element_borders[-1], *rod.element_borders[1:-1])
+    station = next((at for at in ends_first if all(abs(at - each) > SAME_BORDER for each in taken)), None)
+    if station is None:
+        remedy = "give it one more, so that one section is free of supports"
+        raise SceneError(f"rods.{rod.name}.element_borders", "supports at all of them", remedy)
+    return Held(station, free)
+
+
+def _listed(names: Sequence[str]) -> str:
+    return ", ".join(f"'{name}'" for name in names)
 
 
 def _structures(scene: Scene) -> list[list[Rod]]:

@@ -83,6 +83,7 @@ class Solution:
     stretches : parts of the zones found in contact, with the borders that ended on their edges
     system : rods and contact points on the final borders
     force : at every contact point of the system, N
+    free_motion : how far loose rods move in the system's free motions
     states : by rod name, what acts on it in all, and its degrees of freedom
     stored_energy : of all rods and beds, N mm
     cost : unknowns and seconds
@@ -94,6 +95,7 @@ class Solution:
     stretches: tuple[Stretch, ...]
     system: ContactSystem
     force: Array
+    free_motion: Array
     states: Mapping[str, RodState]
     stored_energy: float
     cost: Cost
@@ -194,9 +196,8 @@ class Solution:
         contact, grid = self.scene.contact(pair), self.system.grids[pair]
         points = self.system.points[pair]
         force = self.force[points]
-        spring = self.system.spring[points]
-        open_gap = self.system.initial_gap[points] + self.system.compliance[points] @ self.force
-        gap = np.where(force > 0.0, -force / spring, open_gap)
+        problem = self.system.problem
+        gap = problem.gap[points] + problem.compliance[points] @ self.force + problem.motion[points] @ self.free_motion
         station, across = grid.flat()
         if grid.symmetric:
             beyond = across > across.min()

@@ -12,9 +12,10 @@ from numpy.typing import NDArray
 from cases.scene import Rod, Scene
 from rodmodel.assembly import ElementStore, stored_energy
 from rodmodel.borders import Edge, Rates, border_plan, edge_rates, natural_mesh, placed_meshes
-from rodmodel.contact import unilateral_contact
+from rodmodel.contact import ContactForces, unilateral_contact
 from rodmodel.edges import EdgeSearch, find_edges
-from rodmodel.loose import require_held
+from rodmodel.joints import Loose
+from rodmodel.loose import loose_rods
 from rodmodel.mesh import RodMesh
 from rodmodel.solution import Cost, Solution
 from rodmodel.stretches import Stretch, moved, moving_edges, same_topology, stretches_in_contact
@@ -34,34 +35,37 @@ PENALTY_SHARE = 1e-3
 MOST_TOPOLOGIES = 3
 
 
-def solve(scene: Scene, level: Grades = 5, order: Grades = 6) -> Solution:
+def solve(scene: Scene, level: Grades = 5, order: Grades = 6, multipliers: bool = True) -> Solution:
     """Solve a scene with the hierarchic rod model.
 
     Parameters
     ----------
     level : k of h_k, degree of the displacement in (x, y); by rod name, one for each element, where they differ
     order : p, degree along the rods, at least 2; likewise
+    multipliers : take the penetration of the penalty's springs away, so that nothing depends on the penalty (augmented
+        Lagrangian); without them the springs are what they are
 
     Raises
     ------
     SceneError
-        if supports, joints and beds leave a rod loose.
+        if supports, joints and beds leave a rod loose that no contact could hold.
     ValueError
         if a level is below 1 or an order below 2, or there is not one for each element.
     """
     begin = time.perf_counter()
     mirrors = scene_mirrors(scene)
-    require_held(scene, mirrors)
+    loose = loose_rods(scene, mirrors)
     store = ElementStore()
 
     def system_on(meshes: dict[str, RodMesh]) -> ContactSystem:
-        return contact_system(scene, mirrors, meshes, store)
+        return contact_system(scene, mirrors, meshes, store, loose, multipliers)
 
     natural = {rod.name: natural_mesh(scene, rod, _grades_of(level, rod), _grades_of(order, rod)) for rod in scene.rods}
     system = system_on(natural)
     ready = time.perf_counter()
     contact = moved_contact(scene, natural, system, system_on)
-    states = contact.system.states(contact.force)
+    forces = contact.forces
+    states = contact.system.states(forces.force, forces.motion)
     energy = sum(
         stored_energy(contact.system.rods[name], state.load, state.coefficients) for name, state in states.items()
     )
@@ -69,22 +73,28 @@ def solve(scene: Scene, level: Grades = 5, order: Grades = 6) -> Solution:
     cost = Cost(unknowns, ready - begin, time.perf_counter() - ready)
     return Solution(
         scene,
-        _judged(contact, energy),
+        _judged(contact, energy, loose),
         contact.solutions,
         contact.stretches,
         contact.system,
-        contact.force,
+        forces.force,
+        forces.motion,
         states,
         energy,
         cost,
     )
 
 
-def _judged(contact: MovedContact, strain_energy: float) -> str:
+def _judged(contact: MovedContact, stored_energy: float, loose: Sequence[Loose]) -> str:
     """The contact's outcome, unless what the penalty springs hold says that they are too soft to stand for contact."""
-    penetrating = 0.5 * float(np.sum(contact.force**2 / contact.system.spring))
-    if contact.outcome == "converged" and penetrating > PENALTY_SHARE * strain_energy:
-        share = penetrating / strain_energy
+    problem, forces = contact.system.problem, contact.forces
+    if forces.outcome.startswith("refused"):
+        names = ", ".join(f"'{name}'" for each in loose for name in each.rods)
+        return f"refused: contact does not hold {names} against the loads, and nothing else does"
+    springs = forces.force**2 / problem.spring
+    penetrating = 0.5 * float(np.sum(springs, where=~problem.rigid))
+    if contact.outcome == "converged" and penetrating > PENALTY_SHARE * stored_energy:
+        share = penetrating / stored_energy
         return f"refused: the penalty is too soft, penetration holds {share:.2g} of the strain energy"
     return contact.outcome
 
@@ -111,7 +121,7 @@ class MovedContact:
     solutions: int
     stretches: tuple[Stretch, ...]
     system: ContactSystem
-    force: Array
+    forces: ContactForces
 
 
 def moved_contact(
@@ -124,22 +134,22 @@ def moved_contact(
 
     Where stretches appear, merge or vanish on the way, the search starts anew from what the last solution shows.
     """
-    force = unilateral_contact(system.compliance, system.initial_gap, system.spring)
-    stretches, solutions = stretches_in_contact(system, force), 1
+    forces = unilateral_contact(system.problem)
+    stretches, solutions = stretches_in_contact(system, forces.force), 1
     for _ in range(MOST_TOPOLOGIES):
         edges, positions = moving_edges(scene, stretches)
-        if not edges:
-            return MovedContact("converged", solutions, stretches, system, force)
+        if not edges or forces.outcome != "converged":
+            return MovedContact(forces.outcome, solutions, stretches, system, forces)
         search = _search(scene, natural, stretches, edges, positions, system_on)
         system, solutions = search.system, solutions + len(search.steps)
-        force = unilateral_contact(system.compliance, system.initial_gap, system.spring)
-        found = stretches_in_contact(system, force)
+        forces = unilateral_contact(system.problem)
+        found = stretches_in_contact(system, forces.force)
         wanted = moved(stretches, edges, search.positions)
         if search.outcome == "converged" and same_topology(found, wanted):
-            return MovedContact("converged", solutions, wanted, system, force)
+            return MovedContact(forces.outcome, solutions, wanted, system, forces)
         stretches = found
     reason = f"stagnated: the edges of contact did not settle in {solutions} solutions"
-    return MovedContact(reason, solutions, stretches, system, force)
+    return MovedContact(reason, solutions, stretches, system, forces)
 
 
 def _search(

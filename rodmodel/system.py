@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -26,7 +26,8 @@ from rodmodel.assembly import (
     point_parts,
     prescribed_parts,
 )
-from rodmodel.joints import Skeleton, skeleton
+from rodmodel.contact import ContactProblem
+from rodmodel.joints import Loose, Skeleton, skeleton
 from rodmodel.loads import load_parts
 from rodmodel.mesh import SAME_BORDER, RodMesh
 from rodmodel.pairing import (
@@ -61,7 +62,7 @@ class RodState:
 
 @dataclass(frozen=True, eq=False)
 class ContactSystem:
-    """Gap d = initial_gap + compliance @ force over the contact points of all pairs, and what it was made from.
+    """The contact problem of the points of all pairs, and what it was made from.
 
     Attributes
     ----------
@@ -70,11 +71,9 @@ class ContactSystem:
     points : by pair name, which part of the vector is the pair's
     functionals : by rod name, -u_n of its contact points (n the outward normal of its own face), and last its loads
     places : by rod name, where in the vector its contact points are
-    compliance : C, mm/N, shape (n, n)
-    initial_gap : gap under the given loads and prescribed displacements without contact, mm, shape (n,)
-    spring : c_n w, N/mm, shape (n,)
-    skeleton : the scene's joints, if it has any
-    on_joints : contact points, and last the loads, on the motions of the joints, half solved, shape (n_motions, n + 1)
+    problem : its gap is that under the given loads and prescribed displacements
+    skeleton : the scene's joints and loose rods, if it has any
+    on_joints : contact points, and last the loads, on the skeleton's motions, half solved, shape (n_elastic, n + 1)
     """
 
     scene: Scene
@@ -83,16 +82,14 @@ class ContactSystem:
     points: Mapping[str, slice]
     functionals: Mapping[str, Functionals]
     places: Mapping[str, IntArray]
-    compliance: Array
-    initial_gap: Array
-    spring: Array
+    problem: ContactProblem
     skeleton: Skeleton | None
     on_joints: Array
 
-    def states(self, force: Array) -> dict[str, RodState]:
-        """The rods under the given loads and contact forces (N, shape (n,)), by name."""
-        weights = np.append(force, 1.0)
-        motion = np.empty(0) if self.skeleton is None else self.skeleton.motion(self.on_joints @ weights)
+    def states(self, force: Array, free: Array) -> dict[str, RodState]:
+        """The rods under the given loads, contact forces (N, shape (n,)) and free motions (n_free,), by name."""
+        half = self.on_joints @ np.append(force, 1.0)
+        motion = np.empty(0) if self.skeleton is None else self.skeleton.motion(half, free)
         result = {}
         for name, assembled in self.rods.items():
             load = combined(self.functionals[name], np.append(force[self.places[name]], 1.0)[:, None])
@@ -110,9 +107,18 @@ def contact_system(
     mirrors: Mapping[str, Mirrors],
     meshes: Mapping[str, RodMesh],
     store: ElementStore,
+    loose: Sequence[Loose] = (),
+    multipliers: bool = True,
 ) -> ContactSystem:
-    """Assemble the rods on their meshes (by rod name) and reduce them to their contact points."""
-    rods = {rod.name: assembled_rod(scene, rod, mirrors[rod.name], meshes[rod.name], store) for rod in scene.rods}
+    """Assemble the rods on their meshes (by rod name) and reduce them to their contact points.
+
+    loose : rods that only contact can hold
+    multipliers : take the penetration of the penalty's springs away
+    """
+    rods = {}
+    for rod in scene.rods:
+        stays = [each.stay for each in loose if each.stay is not None and each.rods == (rod.name,)]
+        rods[rod.name] = assembled_rod(scene, rod, mirrors[rod.name], meshes[rod.name], store, stays)
     grids = {pair.name: _grid(scene, pair, rods, mirrors) for pair in scene.contacts}
     counts = [grid.weight.size for grid in grids.values()]
     ends = np.cumsum([0, *counts])
@@ -122,8 +128,8 @@ def contact_system(
     for pair in scene.contacts:
         gap[points[pair.name]] = pair.gap
         spring[points[pair.name]] = pair.penalty * grids[pair.name].weight.ravel()
-    joints = skeleton(scene, mirrors, rods)
-    on_joints = np.zeros((0 if joints is None else len(joints.factor), ends[-1] + 1))
+    joints = skeleton(scene, mirrors, rods, loose)
+    on_joints = np.zeros((0 if joints is None else len(joints.free), ends[-1] + 1))
     found, places = {}, {}
     for name, assembled in rods.items():
         parts, place = _gap_parts(scene, assembled, grids, points)
@@ -135,11 +141,14 @@ def contact_system(
         gap[place] += response[:-1, -1] + on_given(assembled, found[name])[:-1]
         if joints is not None and name in joints.rods:
             on_joints[:, [*place, -1]] += joints.rods[name].on_joints(found[name])
+    free = np.zeros((0, ends[-1] + 1))
     if joints is not None:
-        on_joints = joints.half_solve(on_joints)
+        free, on_joints = joints.free.T @ on_joints, joints.half_solve(on_joints)
         matrix += on_joints[:, :-1].T @ on_joints[:, :-1]
         gap += on_joints[:, :-1].T @ on_joints[:, -1]
-    return ContactSystem(scene, rods, grids, points, found, places, matrix, gap, spring, joints, on_joints)
+    rigid = np.full(ends[-1], multipliers)
+    problem = ContactProblem(matrix, gap, spring, np.ascontiguousarray(free[:, :-1].T), free[:, -1], rigid)
+    return ContactSystem(scene, rods, grids, points, found, places, problem, joints, on_joints)
 
 
 def _grid(

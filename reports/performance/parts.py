@@ -123,7 +123,7 @@ def parts(name: str = CASE, level: int = LEVEL, order: int = ORDER) -> dict[str,
         "Contact points": Part(store_with_chains, system_of),
         CONTACT: Part(
             lambda: system_of(ElementStore()),
-            lambda system: unilateral_contact(system.compliance, system.initial_gap, system.spring),
+            lambda system: unilateral_contact(system.problem),
         ),
         SEARCH: Part(prepared_search, search),
         WHOLE: Part(nothing, lambda _: rm.solve(scene, level, order)),

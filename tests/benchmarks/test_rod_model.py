@@ -116,7 +116,7 @@ class PlainSparse:
     def iterate(self, active: np.ndarray) -> np.ndarray:
         """One contact iteration: matrix with the active points' springs, factorisation, gaps."""
         rows = self.gap[active]
-        spring = self.system.spring[active]
+        spring = self.system.problem.spring[active]
         matrix = self.stiffness + rows.T @ (rows * spring[:, None])
         factor = splu(csc_array(matrix)[self.free][:, self.free], permc_spec="MMD_AT_PLUS_A")
         moved = np.zeros(self.size)
@@ -129,18 +129,18 @@ class TestAgainstPlainSparse:
     def test_plain_sparse_factorisation(self, benchmark: BenchmarkFixture, scene: Scene, system: ContactSystem) -> None:
         plain = PlainSparse(scene)
         full = plain.system
-        force = unilateral_contact(full.compliance, full.initial_gap, full.spring)
+        force = unilateral_contact(full.problem).force
         gap = benchmark.pedantic(plain.iterate, args=(force > 0.0,), rounds=2)
         # the same equations: the same pressure where the points are held
         held = force > 0.0
-        np.testing.assert_allclose(-full.spring[held] * gap[held], force[held], rtol=1e-4)
+        np.testing.assert_allclose(-full.problem.spring[held] * gap[held], force[held], rtol=1e-4)
 
     def test_condensed_chains_and_compliance(self, benchmark: BenchmarkFixture, scene: Scene) -> None:
         meshes = {rod.name: natural_mesh(scene, rod, LEVEL, ORDER) for rod in scene.rods}
 
         def run() -> np.ndarray:
             system = contact_system(scene, scene_mirrors(scene), meshes, ElementStore())
-            return unilateral_contact(system.compliance, system.initial_gap, system.spring)
+            return unilateral_contact(system.problem).force
 
         benchmark(run)
 

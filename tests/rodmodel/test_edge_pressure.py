@@ -62,7 +62,7 @@ def test_slopes_are_those_of_pressures_with_moved_edges(change: str, ends: tuple
 
     def system_at(at: np.ndarray) -> tuple[ContactSystem, dict[str, Rates]]:
         meshes = placed_meshes(scene, plan, edges, at)
-        return contact_system(scene, mirrors, meshes, store), edge_rates(scene, plan, edges, at)
+        return contact_system(scene, mirrors, meshes, store, multipliers=False), edge_rates(scene, plan, edges, at)
 
     def pressures(at: np.ndarray) -> np.ndarray:
         return edge_pressures(system_at(at)[0], moved(stretches, edges, at), edges).value

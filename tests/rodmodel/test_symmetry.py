@@ -53,7 +53,7 @@ def test_the_symmetric_solution_is_the_full_one_to_round_off(scene: Scene) -> No
     forces = []
     for mirrors in (scene_mirrors(scene), {rod.name: (False, False) for rod in scene.rods}):
         system = contact_system(scene, mirrors, meshes, ElementStore())
-        force = unilateral_contact(system.compliance, system.initial_gap, system.spring)
+        force = unilateral_contact(system.problem).force
         grid = system.grids["overlap"]
         forces.append(force.reshape(grid.weight.shape).sum(axis=2))
     np.testing.assert_allclose(forces[0], forces[1], atol=1e-8 * forces[0].sum())  # condition 1e7 of the rods
