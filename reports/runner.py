@@ -6,9 +6,7 @@ killed, never stops the others.
 
 from __future__ import annotations
 
-import resource
 import statistics
-import sys
 import time
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
@@ -18,6 +16,7 @@ from cases.case import Case, Grades
 from cases.scene import SceneError
 from reports.case_comparison import case_comparisons, comparisons_without_reference, evaluation_points
 from reports.comparison import Comparison, Extrapolation
+from reports.memory import peak_memory
 from reports.processes import ProcessFailed, Progress, in_own_process
 from reports.quantities import Quantities, evaluate
 from reports.solution import Model
@@ -97,7 +96,7 @@ def run_rod(case: Case, level: int | None = None, order: int | None = None, repe
         solve_seconds=statistics.median(quantities.solve_seconds for quantities, _ in runs),
     )
     total = statistics.median(seconds for _, seconds in runs)
-    return Run("rod", levels, orders, quantities, total, _peak_memory())
+    return Run("rod", levels, orders, quantities, total, peak_memory())
 
 
 def run_reference(case: Case) -> Run:
@@ -114,7 +113,7 @@ def run_reference(case: Case) -> Run:
     begin = time.perf_counter()
     solution = reference3d.solve(case.scene)
     quantities = evaluate(solution, points.stations, points.stress_points)
-    return Run("reference", None, None, quantities, time.perf_counter() - begin, _peak_memory())
+    return Run("reference", None, None, quantities, time.perf_counter() - begin, peak_memory())
 
 
 def run_case(case: Case, progress: Progress) -> CaseRun:
@@ -141,7 +140,7 @@ def run_case(case: Case, progress: Progress) -> CaseRun:
         begin = time.perf_counter()
         quantities = evaluate(solution, points.stations, points.stress_points)
         total = solution.cost.setup_seconds + solution.cost.solve_seconds + time.perf_counter() - begin
-        references.append(Run("reference", None, None, quantities, total, _peak_memory()))
+        references.append(Run("reference", None, None, quantities, total, peak_memory()))
 
     coarse, medium, fine = (solution.representative_size for solution in solutions)
     order = reference3d.formal_order(case.scene)
@@ -170,9 +169,3 @@ def run_cases(cases: Sequence[Case], progress: Callable[[Case, str], None]) -> I
             yield in_own_process(run_case, case, partial(progress, case))
         except ProcessFailed as error:
             yield Failure(case, str(error))
-
-
-def _peak_memory() -> float:
-    """Largest resident memory of this process so far, MB."""
-    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
-    return peak / 2**20 if sys.platform == "darwin" else peak / 2**10
