@@ -27,8 +27,8 @@ from cases.scene import (
     SectionMoment,
     Support,
 )
-from rodmodel.centre_line import kinks
-from rodmodel.mesh import SAME_BORDER, RodMesh, rod_mesh, split, stretched
+from rodmodel.centre_line import knots, roughness
+from rodmodel.mesh import SAME_BORDER, RodMesh, rod_mesh, split, split_where_rough, stretched
 from rodmodel.pairing import opposite_stations
 
 Array = NDArray[np.float64]
@@ -67,18 +67,19 @@ class RodBorders:
 
 
 def natural_mesh(scene: Scene, rod: Rod, level: int | Sequence[int], order: int | Sequence[int]) -> RodMesh:
-    """The rod's elements, split where they miss loads, supports, beds, zone ends and jumps of curvature.
+    """The rod's elements, split where they miss loads, supports, beds, zone ends and rough places of the centre line.
 
     Fields have kinks there.
     """
-    return split(rod_mesh(rod, level, order), _held_stations(scene, rod))
+    mesh = split(rod_mesh(rod, level, order), _held_stations(scene, rod))
+    return split_where_rough(mesh, knots(rod.centre_line), roughness(rod.centre_line))
 
 
 def _held_stations(scene: Scene, rod: Rod) -> Array:
     acting = [*scene.loads, *scene.supports, *scene.beds]
     acts = [at for each in acting if each.rod == rod.name for at in _acts_at(each)]
     zones = [station for pair in scene.contacts for station in _on_rod(scene, pair, rod, np.array(pair.zone))]
-    return np.array([0.0, rod.element_borders[-1], *kinks(rod.centre_line), *acts, *zones])
+    return np.array([0.0, rod.element_borders[-1], *acts, *zones])
 
 
 def _acts_at(acting: Load | Clamp | Support | Bed) -> tuple[float, ...]:

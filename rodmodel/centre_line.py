@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cases.scene import CentreLine, Helix, Line, Path, Rod, Spline
-from rodmodel.spline import spline_curve, spline_frames, spline_points, spline_turning
+from rodmodel.spline import curvature_jumps, spline_curve, spline_frames, spline_points, spline_turning
 
 Array = NDArray[np.float64]
 
@@ -122,6 +122,15 @@ def knots(line: CentreLine) -> Array:
         within = [start + knots(piece) for start, piece in zip(line.borders, line.pieces, strict=False)]
         return np.sort(np.concatenate([kinks(line), *within]))
     return spline_curve(line).knot_stations[1:-1] if isinstance(line, Spline) else np.empty(0)
+
+
+@lru_cache(maxsize=256)
+def roughness(line: CentreLine) -> Array:
+    """How the turning changes at the knots: the jump of its slope, 1/mm^2, infinite where it jumps itself."""
+    if isinstance(line, Path):
+        first, *others = (roughness(piece) for piece in line.pieces)
+        return np.concatenate([first, *(np.concatenate([[np.inf], jumps]) for jumps in others)])
+    return curvature_jumps(line) if isinstance(line, Spline) else np.empty(0)
 
 
 def _piece_at(path: Path, station: Array) -> NDArray[np.int64]:

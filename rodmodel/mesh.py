@@ -15,6 +15,10 @@ IntArray = NDArray[np.int64]
 
 # Borders closer than this (mm) are the same border written with different digits.
 SAME_BORDER = 1e-6
+# Roughness times the square of an element's length that polynomials along the element may smooth over. What they leave
+# goes with its square: on a sharp curve through five points, where it is 0.5 on 12 elements, the
+# deflection at order 8 is off by 3 % with all knots inside elements, and by 1e-5 with none.
+SMOOTH = 1e-3
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,6 +64,27 @@ def split(mesh: RodMesh, stations: Array) -> RodMesh:
     borders = borders[np.concatenate([[True], np.diff(borders) > SAME_BORDER])]
     parent = np.searchsorted(mesh.borders, 0.5 * (borders[:-1] + borders[1:])) - 1
     return RodMesh(borders, mesh.levels[parent], mesh.orders[parent])
+
+
+def split_where_rough(mesh: RodMesh, knots: Array, roughness: Array) -> RodMesh:
+    """The mesh with borders at those knots of the centre line that are too rough to lie inside an element.
+
+    An element is split at the rough knot next to its middle, until none is left inside.
+
+    knots : arc length, mm, shape (n,)
+    roughness : jump of the slope of the turning there, 1/mm^2, shape (n,)
+    """
+    while True:
+        index = np.clip(np.searchsorted(mesh.borders, knots) - 1, 0, len(mesh.borders) - 2)
+        left, right = mesh.borders[index], mesh.borders[index + 1]
+        inside = np.minimum(knots - left, right - knots) > SAME_BORDER
+        rough = np.flatnonzero(inside & (roughness * (right - left) ** 2 > SMOOTH))
+        if len(rough) == 0:
+            return mesh
+        off_middle = np.abs(knots - 0.5 * (left + right))
+        nearest_first = rough[np.argsort(off_middle[rough])]
+        _, first = np.unique(index[nearest_first], return_index=True)
+        mesh = split(mesh, knots[nearest_first[first]])
 
 
 def stretched(mesh: RodMesh, anchors: Sequence[int], places: Array) -> RodMesh:

@@ -155,6 +155,19 @@ def spline_turning(line: Spline, station: Array) -> Array:
     return np.array([-against, k2, tau])
 
 
+def curvature_jumps(line: Spline) -> Array:
+    """Jumps of the rate of change of dt/ds at the inner given points, 1/mm^2, shape (n_pieces - 1,).
+
+    The third derivative by the parameter jumps there; its part along t does not count.
+    """
+    curve = spline_curve(line)
+    parts = (len(curve.cells) - 1) // (len(curve.knots) - 1)
+    after, before = curve.powers[:, parts::parts], curve.powers[3, parts - 1 : -1 : parts]
+    speed = np.linalg.norm(after[1], axis=1)
+    jump = 6.0 * np.cross(after[1], after[3] - before)
+    return np.asarray(np.linalg.norm(jump, axis=1) / speed**4)
+
+
 def _shifted(powers: Array, start: Array) -> Array:
     """Coefficients about other starts of every piece, shape (n_pieces, m), as (4, n_pieces * m, 3)."""
     v = start[..., None]

@@ -10,8 +10,9 @@ from scipy.integrate import solve_ivp
 from scipy.interpolate import CubicSpline
 
 import rodmodel as rm
-from cases.scene import Bed, CentreLine, Gravity, Load, Path, Pressure, Section, Spline
-from rodmodel.centre_line import centre_points, frames, knots, turning_at
+from cases.scene import Bed, CentreLine, Gravity, LineLoad, Load, Path, Pressure, Section, Spline
+from rodmodel.borders import natural_mesh
+from rodmodel.centre_line import centre_points, frames, knots, roughness, turning_at
 from rodmodel.section import Fields, section_stiffness
 from rodmodel.stiffness import axial_quadrature, varying_stiffness
 from rodmodel.symmetry import scene_mirrors
@@ -28,8 +29,8 @@ def through(line: CentreLine, count: int, frame: str = "minimal rotation") -> Sp
 
 
 def clamped(line: CentreLine, section: Section, *loads: Load, beds: tuple[Bed, ...] = ()) -> rm.Scene:
-    """A rod of four equal elements behind two short ones, clamped at its start."""
-    borders = (0.0, 3.0, *np.linspace(12.0, line.length, 5).tolist())
+    """A rod of sixteen equal elements behind two short ones, clamped at its start."""
+    borders = (0.0, 3.0, *np.linspace(12.0, line.length, 17).tolist())
     rod = rm.Rod("bow", line, section, STEEL, borders)
     return rm.Scene("bow", (rod,), (rm.Clamp("bow", "start"),), loads, (), beds=beds)
 
@@ -136,6 +137,34 @@ def test_spline_through_points_of_a_straight_line_is_that_line() -> None:
     expected = end_displacement(clamped(straight, section, load))
     # round-off of K, whose condition is 1e7
     np.testing.assert_allclose(end_displacement(clamped(spline, section, load)), expected, rtol=1e-8)
+
+
+def test_elements_end_where_curvature_changes_its_slope_abruptly() -> None:
+    """A sharp curve's, but none of a gentle one; with not-a-knot ends nothing jumps at the first and last inner point."""
+    for line, count in ((Spline(SKEW, (0.0, 0.0, 1.0)), 1), (through(ARC, 65), 16)):
+        rod = rm.Rod("bow", line, rm.Circle(8.0), STEEL, tuple(np.linspace(0.0, line.length, count + 1).tolist()))
+        borders = natural_mesh(rm.Scene("bow", (rod,), (rm.Clamp("bow", "start"),), (), ()), rod, 2, 3).borders
+        expected = rod.element_borders if count > 1 else (0.0, knots(line)[1], line.length)
+        np.testing.assert_allclose(borders, expected)
+
+
+def test_jumps_of_the_slope_of_curvature() -> None:
+    line = Spline(SKEW, (0.0, 0.0, 1.0))
+    at, step = knots(line), 1e-4
+    before, after = (
+        turning_at(line, at + sign * step) - turning_at(line, at + 2.0 * sign * step) for sign in (-1.0, 1.0)
+    )
+    jump = np.linalg.norm((after + before)[:2], axis=0) / step
+    np.testing.assert_allclose(roughness(line), jump, rtol=1e-3, atol=1e-7)  # one-sided differences
+
+
+def test_a_load_on_a_sharp_curve_is_carried_whole() -> None:
+    line = Spline(SKEW, (0.0, 0.0, 1.0))
+    load = LineLoad("bow", 0.0, line.length, (0.0, 1.0, -2.0))
+    rod = rm.Rod("bow", line, rm.Rectangle(8.0, 6.0), STEEL, tuple(np.linspace(0.0, line.length, 13).tolist()))
+    solution = rm.solve(rm.Scene("bow", (rod,), (rm.Clamp("bow", "start"),), (load,), ()), 2, 8)
+    force = line.length * np.array([0.0, -1.0, 2.0])
+    np.testing.assert_allclose(solution.reaction("bow", 0.0)[:3], force, atol=1e-6 * line.length)
 
 
 def test_it_does_not_matter_which_frame_a_round_rod_has() -> None:
