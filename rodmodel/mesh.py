@@ -16,8 +16,8 @@ IntArray = NDArray[np.int64]
 # Borders closer than this (mm) are the same border written with different digits.
 SAME_BORDER = 1e-6
 # Roughness times the square of an element's length that polynomials along the element may smooth over. What they leave
-# goes with its square: on a sharp curve through five points, where it is 0.5 on 12 elements, the
-# deflection at order 8 is off by 3 % with all knots inside elements, and by 1e-5 with none.
+# goes with its square: on a sharp curve through five points, where it is 0.5 on 12 elements, the deflection at order 8
+# is off by 3 % with all knots inside elements, and by 1e-5 with none.
 SMOOTH = 1e-3
 
 

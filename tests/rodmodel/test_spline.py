@@ -140,7 +140,7 @@ def test_spline_through_points_of_a_straight_line_is_that_line() -> None:
 
 
 def test_elements_end_where_curvature_changes_its_slope_abruptly() -> None:
-    """A sharp curve's, but none of a gentle one; with not-a-knot ends nothing jumps at the first and last inner point."""
+    """Of a sharp curve's points all inner ones but the first and last, where not-a-knot ends leave no jump."""
     for line, count in ((Spline(SKEW, (0.0, 0.0, 1.0)), 1), (through(ARC, 65), 16)):
         rod = rm.Rod("bow", line, rm.Circle(8.0), STEEL, tuple(np.linspace(0.0, line.length, count + 1).tolist()))
         borders = natural_mesh(rm.Scene("bow", (rod,), (rm.Clamp("bow", "start"),), (), ()), rod, 2, 3).borders
