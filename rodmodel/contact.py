@@ -16,9 +16,10 @@ from scipy.linalg import cho_factor, cho_solve, cholesky, solve_triangular
 
 Array = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
+IntArray = NDArray[np.int64]
 
 # Steps of the multipliers, and the change of the forces, relative to their sum, at which they have settled.
-MOST_STEPS, SETTLED = 100, 1e-9
+MOST_STEPS, SETTLED = 100, 1e-6
 # Weight of balance against the gaps where least squares look for the points that hold a loose rod.
 BALANCE_WEIGHT = 1e3
 # Forces and gaps this small against the largest have no certain sign.
@@ -109,47 +110,52 @@ class ActiveSet:
         problem = self._problem
         return self.respond(problem.gap - multiplier / problem.spring, problem.motion_load)
 
-    def settled(self, gap: Array, load: Array) -> tuple[Array, Array]:
-        """As `respond`, with the multipliers that take the springs' penetration away at rigid points."""
-        rigid = self._problem.rigid if gap.ndim == 1 else self._problem.rigid[:, None]
-        spring = self._problem.spring if gap.ndim == 1 else self._problem.spring[:, None]
-        multiplier = np.zeros_like(gap)
+    def settled_forces(self) -> tuple[Array, Array]:
+        """Forces and motions of the problem with the multipliers that take the springs' penetration away."""
+        multiplier = np.zeros_like(self._problem.gap)
         for _ in range(MOST_STEPS):
-            force, motion = self.respond(gap - multiplier / spring, load)
-            before, multiplier = multiplier, np.where(rigid, force, 0.0)
+            force, motion = self.forces(multiplier)
+            before, multiplier = multiplier, np.where(self._problem.rigid, force, 0.0)
             if _are_settled(multiplier, before):
                 break
         return force, motion
-
-    def settled_forces(self) -> tuple[Array, Array]:
-        """Forces and motions of the problem with these points joined."""
-        return self.settled(self._problem.gap, self._problem.motion_load)
 
 
 def _are_settled(multiplier: Array, before: Array) -> bool:
     return bool(np.abs(multiplier - before).sum() <= SETTLED * np.abs(multiplier).sum())
 
 
-def unilateral_contact(problem: ContactProblem) -> ContactForces:
+def unilateral_contact(problem: ContactProblem, settled: bool = True) -> ContactForces:
     """Contact forces that only push: f >= 0, d >= 0 (d + f / (c_n w) >= 0 at springs), and one of the two zero.
 
     Each step of the multipliers is the minimum of a convex quadratic over f >= 0, solved by Lawson and Hanson's
     non-negative least squares, which end after finitely many sets. (A primal-dual active set cycles on these problems:
     more points than an element has freedoms make sets that differ by nothing but round-off.) Where the set of the step
     before still serves, no other is looked for.
+
+    settled : go on until the multipliers have taken the penetration away; the first step alone tells about where
     """
-    multiplier, tried = np.zeros_like(problem.gap), 0
-    force, motion = multiplier, np.zeros_like(problem.motion_load)
+    force, motion = np.zeros_like(problem.gap), np.zeros_like(problem.motion_load)
     if not _can_balance(problem):
-        return ContactForces(force, motion, "refused: contact does not hold what nothing else holds", tried)
-    chosen: ActiveSet | None = None
-    for _ in range(MOST_STEPS):
-        if chosen is None or len(_wrong(chosen, problem, multiplier)):
-            chosen = _active_set(problem, multiplier)
-            tried += 1
-        if chosen is None:
-            return ContactForces(force, motion, "stagnated: no set of contact points serves", tried)
-        force, motion = chosen.forces(multiplier)
+        return ContactForces(force, motion, "refused: contact does not hold what nothing else holds", 0)
+    multiplier, tried = force, 1
+    chosen = ActiveSet(_pushing(problem, multiplier), problem)
+    for _ in range(MOST_STEPS if settled else 1):
+        force, motion, wrong = _answer(chosen, problem, multiplier)
+        if len(wrong):
+            chosen, tried = ActiveSet(_pushing(problem, multiplier), problem), tried + 1
+            force, motion, wrong = _answer(chosen, problem, multiplier)
+        # Least squares lose digits to the factor's condition, and weigh balance instead of asking for it: one point
+        # after another changes sides until all serve.
+        for _ in range(3 * len(force)):
+            if not len(wrong):
+                break
+            active = chosen.active.copy()
+            active[wrong[0]] = ~active[wrong[0]]
+            chosen, tried = ActiveSet(active, problem), tried + 1
+            force, motion, wrong = _answer(chosen, problem, multiplier)
+        if len(wrong):
+            return ContactForces(np.maximum(force, 0.0), motion, "stagnated: no set of contact points serves", tried)
         force = np.maximum(force, 0.0)
         before, multiplier = multiplier, np.where(problem.rigid, force, 0.0)
         if _are_settled(multiplier, before):
@@ -170,36 +176,24 @@ def _can_balance(problem: ContactProblem) -> bool:
     return bool(missing <= BALANCED * size)
 
 
-def _wrong(chosen: ActiveSet, problem: ContactProblem, multiplier: Array) -> NDArray[np.int64]:
-    """Points that pull, and points that are not joined and closer than their multiplier allows; the worst first."""
+def _answer(chosen: ActiveSet, problem: ContactProblem, multiplier: Array) -> tuple[Array, Array, IntArray]:
+    """Forces and motions on a set, and the points wrong about it, the worst first.
+
+    Those that pull, and those that are not joined and closer than their multiplier allows.
+    """
     force, motion = chosen.forces(multiplier)
     opening = problem.gap + problem.compliance @ force + problem.motion @ motion - multiplier / problem.spring
     size = np.abs(problem.gap).max(initial=0.0) + np.abs(opening).max(initial=0.0)
     pulling = -force / (np.abs(force).max(initial=0.0) or 1.0)
     closing = -opening / (size or 1.0)
     wrong = np.where(chosen.active, pulling, closing)
-    order = np.argsort(-wrong, kind="stable")
-    return np.asarray(order[wrong[order] > ROUND_OFF])
+    number = np.flatnonzero(wrong > ROUND_OFF)
+    return force, motion, number[np.argsort(-wrong[number], kind="stable")]
 
 
-def _active_set(problem: ContactProblem, multiplier: Array) -> ActiveSet | None:
-    """The set of points in contact; None where none is found."""
-    gap = problem.gap - multiplier / problem.spring
-    chosen = ActiveSet(_pushing(problem, gap), problem)
-    # Least squares lose digits to the factor's condition, and weigh balance instead of asking for it: one point after
-    # another changes sides until all serve.
-    for _ in range(3 * len(gap)):
-        wrong = _wrong(chosen, problem, multiplier)
-        if not len(wrong):
-            return chosen
-        active = chosen.active.copy()
-        active[wrong[0]] = ~active[wrong[0]]
-        chosen = ActiveSet(active, problem)
-    return chosen if not len(_wrong(chosen, problem, multiplier)) else None
-
-
-def _pushing(problem: ContactProblem, gap: Array) -> BoolArray:
+def _pushing(problem: ContactProblem, multiplier: Array) -> BoolArray:
     """Points that push in the minimum over f >= 0, up to round-off."""
+    gap = problem.gap - multiplier / problem.spring
     if not len(gap):
         return np.empty(0, dtype=bool)
     # Importing it takes longer than importing all of this package, and only scenes with contact need it.

@@ -78,7 +78,7 @@ def edge_pressures(system: ContactSystem, stretches: Sequence[Stretch], edges: S
         right[chosen[number], number] = -1.0 / grid.weight[point]
     joined = ActiveSet(held, problem)
     force, motion = joined.settled_forces()
-    adjoint, adjoint_motion = joined.settled(right, np.zeros((len(problem.motion_load), len(edges))))
+    adjoint, adjoint_motion = joined.respond(right, np.zeros((len(problem.motion_load), len(edges))))
     value = -right[chosen, np.arange(len(edges))] * force[chosen]
     return EdgePressures(system, value, chosen, force, motion, adjoint, adjoint_motion)
 

@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from cases.scene import COMPONENTS, Bed, Joint, Rod, Scene, SceneError, Support
+from cases.scene import COMPONENTS, Bed, Clamp, Joint, Rod, Scene, SceneError, Support
 from rodmodel.assembly import Mirrors
 from rodmodel.centre_line import centre_points, frames, turning_at
 from rodmodel.face import face_strip
@@ -29,10 +29,13 @@ def loose_rods(scene: Scene, mirrors: Mapping[str, Mirrors]) -> tuple[Loose, ...
     SceneError
         if one can that no contact could hold; it names the rods and the motion.
     """
+    clamped = {support.rod for support in scene.supports if isinstance(support, Clamp)}
     motions = symmetric_motions(scene, mirrors)
     touched = {side.rod for pair in scene.contacts for side in (pair.first, pair.second)}
     result = []
     for rods in _structures(scene):
+        if any(rod.name in clamped for rod in rods):
+            continue
         centre = np.mean([np.mean(rod.centre_line.end_points, axis=0) for rod in rods], axis=0)
         size = max(rod.length for rod in rods)
         # Turning in units of the rods' length, so that both kinds of motion displace alike.

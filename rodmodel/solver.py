@@ -134,11 +134,12 @@ def moved_contact(
 
     Where stretches appear, merge or vanish on the way, the search starts anew from what the last solution shows.
     """
-    forces = unilateral_contact(system.problem)
+    forces = unilateral_contact(system.problem, settled=False)
     stretches, solutions = stretches_in_contact(system, forces.force), 1
     for _ in range(MOST_TOPOLOGIES):
         edges, positions = moving_edges(scene, stretches)
         if not edges or forces.outcome != "converged":
+            forces = unilateral_contact(system.problem)
             return MovedContact(forces.outcome, solutions, stretches, system, forces)
         search = _search(scene, natural, stretches, edges, positions, system_on)
         system, solutions = search.system, solutions + len(search.steps)
