@@ -377,6 +377,8 @@ def located(mesh: SectionMesh, place: Array) -> tuple[IntArray, Array, Array]:
         mapping[singular] = np.eye(2) * reach[element.ravel()][singular, None, None]
         step = np.linalg.solve(mapping, missing[..., None])[..., 0]
         local = np.clip(local + step, -3.0, 3.0)
-    beyond = np.abs(local).max(axis=1).reshape(len(place), candidates)
+    # where the search found no place in an element, the point is far from it
+    missing = np.linalg.norm(target - np.einsum("an,nac->nc", shapes(*local.T)[0], nodes), axis=1)
+    beyond = (np.abs(local).max(axis=1) + missing / (SAME * reach[element.ravel()])).reshape(len(place), candidates)
     holds = beyond <= np.maximum(1.0 + 1e-8, beyond.min(axis=1, keepdims=True))
     return element, local.reshape(len(place), candidates, 2), holds / holds.sum(axis=1, keepdims=True)

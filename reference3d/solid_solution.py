@@ -28,6 +28,8 @@ IntArray = NDArray[np.int64]
 SIDES: tuple[Side, Side] = ("left", "right")
 # Gauss points across every element edge, and along every piece, of a bed
 ACROSS, ALONG = 3, 4
+# how far off an element the centroid may be found, in its own coordinates and over the size of the section
+INSIDE = 1e-6
 
 
 @dataclass(frozen=True)
@@ -58,10 +60,13 @@ class SolidRod:
         section = self.body.section
         element, local, share = located(section, np.zeros((1, 2)))
         holding = int(np.argmax(share[0]))
-        weights = np.zeros(len(section.nodes))
-        if np.abs(local[0, holding]).max() > 1.0 + 1e-6:
+        quad = section.quads[element[0, holding]]
+        values = shapes(*local[0, holding][:, None])[0][:, 0]
+        inside = np.abs(local[0, holding]).max() < 1.0 + INSIDE
+        if not inside or np.linalg.norm(values @ section.nodes[quad]) > INSIDE * np.ptp(section.nodes):
             return self.body.integrals.even / self.body.integrals.area
-        weights[section.quads[element[0, holding]]] = shapes(*local[0, holding][:, None])[0][:, 0]
+        weights = np.zeros(len(section.nodes))
+        weights[quad] = values
         return weights
 
     def stress_at(self, layer: IntArray, zeta: Array, quads: IntArray, local: Array) -> Array:

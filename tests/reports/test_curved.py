@@ -20,6 +20,7 @@ from cases.scene import (
     Polygon,
     Rod,
     Scene,
+    SceneError,
     SectionForce,
     SectionMoment,
 )
@@ -276,12 +277,16 @@ def test_without_3d_the_rod_model_s_results_are_written(untreated: CaseRun, tmp_
 
 
 def test_a_case_that_3d_refuses_runs_to_its_end(untreated: CaseRun, monkeypatch: pytest.MonkeyPatch) -> None:
+    def refuse(scene: Scene, progress: object) -> None:
+        raise SceneError("rods.ring.centre_line", "an arc", "the 3D reference does not mesh it")
+
     monkeypatch.setattr(runner, "run_rod", lambda case, repeats: untreated.rod)
+    monkeypatch.setattr("reference3d.solve_sequence", refuse)
 
     found = runner.run_case(untreated.case, lambda _: None)
 
     assert found.references == ()
-    assert found.refusal.startswith("rods.ring.centre_line: found an arc; ")
+    assert "the 3D reference does not mesh it" in found.refusal
     assert [each.verdict for each in found.comparisons] == ["not resolved"] * 2
 
 

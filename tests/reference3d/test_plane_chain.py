@@ -1,0 +1,55 @@
+"""The chain of planes against a dense solution of the same equations."""
+
+import numpy as np
+import pytest
+
+from reference3d.plane_chain import HeldPlane, combinations_held, factorise, solve
+
+SIZE, KIND = 5, np.array([0, 1, 0, 2])
+FIXED = np.arange(SIZE) < 2
+
+
+@pytest.fixture
+def layers():
+    """Matrices of three kinds of layers that resist every motion a little."""
+    rng = np.random.default_rng(3)
+    roots = rng.standard_normal((3, 3 * SIZE, 3 * SIZE))
+    return roots @ roots.transpose(0, 2, 1) + np.eye(3 * SIZE)
+
+
+@pytest.fixture
+def whole(layers):
+    """The whole chain as a dense matrix."""
+    matrix = np.zeros(((2 * len(KIND) + 1) * SIZE,) * 2)
+    for layer, kind in enumerate(KIND):
+        block = slice(2 * layer * SIZE, (2 * layer + 3) * SIZE)
+        matrix[block, block] += layers[kind]
+    return matrix
+
+
+@pytest.mark.parametrize("borders", [(), (0,), (4,), (0, 2, 4), (1, 2)])
+@pytest.mark.parametrize("combined", [False, True])
+def test_held_unknowns_and_combinations_are_zero_and_all_others_in_balance(layers, whole, borders, combined):
+    rng = np.random.default_rng(5)
+    rows = rng.standard_normal((2, SIZE)) if combined else np.eye(SIZE)[:2]
+    plane = combinations_held(rows) if combined else HeldPlane(None, FIXED)
+    force = rng.standard_normal((2 * len(KIND) + 1, SIZE, 3))
+
+    found = solve(factorise(lambda kind: layers[kind], KIND, dict.fromkeys(borders, plane)), force)
+
+    # dense, with a Lagrange multiplier for every held combination
+    constraints = np.zeros((2 * len(borders), len(whole)))
+    for number, border in enumerate(borders):
+        constraints[2 * number : 2 * number + 2, 2 * border * SIZE : (2 * border + 1) * SIZE] = rows
+    full = np.block([[whole, constraints.T], [constraints, np.zeros((len(constraints),) * 2)]])
+    right = np.concatenate([force.reshape(-1, 3), np.zeros((len(constraints), 3))])
+    np.testing.assert_allclose(found.reshape(-1, 3), np.linalg.solve(full, right)[: len(whole)], atol=1e-11)
+
+
+def test_a_chain_that_is_not_held_is_refused(layers):
+    singular = layers[0].copy()
+    singular[:] = 0.0
+    singular[SIZE : 2 * SIZE, SIZE : 2 * SIZE] = np.eye(SIZE)
+
+    with pytest.raises(np.linalg.LinAlgError, match="positive definite"):
+        factorise(lambda _: singular, np.zeros(2, dtype=int), {})
