@@ -56,11 +56,16 @@ def stretches(line: CentreLine) -> tuple[Stretch, ...]:
 
 
 def turning_rate(line: CentreLine, station: Array) -> Array:
-    """How fast the frame turns, rad/mm, by central differences; shape (n,)."""
+    """How fast the frame turns, rad/mm, by central differences; where it turns evenly, the same to the last digit."""
     reach = 1e-4 * line.length
-    before, after = np.clip(station - reach, 0.0, None), np.clip(station + reach, None, line.length)
+    station = np.array(station, dtype=np.float64)
+    for stretch in stretches(line):
+        if stretch.even:
+            station[(stretch.start < station) & (station < stretch.end)] = 0.5 * (stretch.start + stretch.end)
+    different, place = np.unique(station, return_inverse=True)
+    before, after = np.clip(different - reach, 0.0, None), np.clip(different + reach, None, line.length)
     change = np.linalg.norm(frames(line, after) - frames(line, before), axis=(1, 2)) / np.sqrt(2.0)
-    return np.asarray(change / (after - before))
+    return np.asarray((change / (after - before))[place])
 
 
 def _evaluate(line: CentreLine, station: Array) -> tuple[Array, Array]:

@@ -159,7 +159,7 @@ def _in_words(free: Array) -> str:
 
 
 def _shown(vector: Array) -> str:
-    unit = vector / np.abs(vector).max()
+    unit = vector / vector[np.argmax(np.abs(vector))]
     return "(" + ", ".join(f"{round(float(value), 3) + 0.0:g}" for value in unit) + ")"
 
 

@@ -64,8 +64,7 @@ def layer_borders(scene: Scene, rod: Rod, refinement: int) -> Array:
             add(load.end, LARGEST_CELL * between)
     parts = [np.zeros(1)]
     for start, end in pairwise(sorted(breaks)):
-        inside = np.linspace(start, end, SAMPLES)
-        rate = turning_rate(rod.centre_line, inside)
+        rate = turning_rate(rod.centre_line, np.linspace(start, end, SAMPLES + 2)[1:-1])
         cap = np.minimum(largest, LARGEST_TURN / np.maximum(rate, LARGEST_TURN / largest))
         parts.append(segment_borders(start, end, breaks[start], breaks[end], cap, refinement)[1:])
     return np.concatenate(parts)

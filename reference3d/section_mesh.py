@@ -17,7 +17,7 @@ from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
 from cases.scene import Box, Circle, Face, Polygon, Rectangle, Ring, Section
-from reference3d.grading import across_borders
+from reference3d.grading import SECTION_GRADING
 from reference3d.quadratic import line_nodes, shape_derivatives, shape_functions
 
 Array = NDArray[np.float64]
@@ -26,6 +26,8 @@ IntArray = NDArray[np.int64]
 GMSH_QUADRANGLE = 3
 # of a circle: half side of the core over the radius, and how far its sides bulge from straight to circular
 CORE, BULGE = 0.45, 0.35
+# blocks across a square, and across a narrow side at least
+CELLS, FEWEST_CELLS = 3.0, 2
 # around a ring, and along the walls of a box: blocks at least, and largest length over the wall's thickness
 RING_BLOCKS, MOST_SLENDER = 8, 4.0
 WALL_BLOCKS = 2
@@ -147,11 +149,18 @@ def _joined(grids: list[Array], size: float) -> SectionMesh:
 
 
 def _rectangle(section: Rectangle, refinement: int) -> Array:
-    side = max(min(section.width, section.height), 0.5 * max(section.width, section.height))
+    between = math.sqrt(section.width * section.height)
     x, y = (
-        line_nodes(across_borders(extent, [], side, refinement, False)) for extent in (section.width, section.height)
+        line_nodes(_across(extent, max(FEWEST_CELLS, round(CELLS * extent / between)) * refinement))
+        for extent in (section.width, section.height)
     )
     return np.stack(np.meshgrid(x, y), axis=-1)
+
+
+def _across(extent: float, count: int) -> Array:
+    """Borders of elements that get finer towards both sides, by a smooth map; mm, shape (count + 1,)."""
+    at = np.linspace(-1.0, 1.0, count + 1)
+    return np.asarray(0.5 * extent * (at + SECTION_GRADING * np.sin(np.pi * at) / np.pi))
 
 
 def _box(section: Box, refinement: int) -> list[Array]:

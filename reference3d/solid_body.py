@@ -149,7 +149,7 @@ def _kinds(rod: Rod, borders: Array, beds: Sequence[Bed]) -> tuple[IntArray, Int
     parts = stretches(rod.centre_line)
     part = np.searchsorted([each.start for each in parts], middle) - 1
     even = np.array([each.even for each in parts])[part]
-    rounded = np.round(length / (SAME_LENGTH * length.max()) / 10.0)
+    rounded = np.round(length / (SAME_LENGTH * length.max()))
     alone = np.where(even, -1, np.arange(len(length)))
     under = [np.where((bed.start < middle) & (middle < bed.end), 1, 0) for bed in beds]
     key = np.stack([part, alone, rounded, *under])
