@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from itertools import pairwise
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from cases.centre_lines import Line
-from cases.checks import SceneError, require
+from cases.checks import require
 from cases.rods import Face, Rod, RodFace
 from cases.sections import Box, Rectangle
 
@@ -17,6 +19,53 @@ _Array = NDArray[np.float64]
 
 # Least angle between the outward normals of two faces that may touch, degrees.
 _LEAST_FACING_ANGLE = 135.0
+# Rods at a cosine below this cross each other: where their faces meet is for the solvers to find.
+_LEAST_PARALLEL = 0.999
+
+
+@dataclass(frozen=True)
+class Ground:
+    """What lies opposite a face and does not move: its shape is in the gap.
+
+    Parameters
+    ----------
+    modulus : k of a Winkler bed that pushes and cannot pull, N/mm^3; None for a rigid body
+    """
+
+    modulus: float | None = None
+
+
+@dataclass(frozen=True)
+class GapTable:
+    """Gap given at stations, straight between them and as at the last ones beyond.
+
+    Parameters
+    ----------
+    stations : arc length along the first rod, ascending, mm
+    gaps : there, mm
+    """
+
+    stations: tuple[float, ...]
+    gaps: tuple[float, ...]
+
+
+@dataclass(frozen=True)
+class RoundGap:
+    """Gap between a straight face and a round one, or a cylinder lying across.
+
+    Parameters
+    ----------
+    radius : mm; negative where the round face is hollow
+    station : where the gap is least (hollow: largest), arc length along the first rod, mm
+    least : the gap there, mm
+    """
+
+    radius: float
+    station: float
+    least: float = 0.0
+
+
+Gap = float | GapTable | RoundGap | Literal["drawn"]
 
 
 @dataclass(frozen=True)
@@ -25,18 +74,63 @@ class ContactPair:
 
     Parameters
     ----------
-    first, second : the faces; n_c is the outward normal of the first
+    first : a face of a rod; n_c is its outward normal
+    second : a face of another rod, or ground
     zone : candidate zone, arc length along the first rod (start, end), mm
-    gap : g, initial distance of the faces, mm. It counts as given; the drawn distance is not used.
-    penalty : c_n, N/mm^3
+    gap : g, initial distance of the faces, mm. It counts as given and the drawn distance is not used, unless it is
+        "drawn": then it is the distance from the first face along its normal to the second face as drawn.
+    penalty : c_n, N/mm^3; None for one that suits the rods' compliance
     """
 
     name: str
     first: RodFace
-    second: RodFace
+    second: RodFace | Ground
     zone: tuple[float, float]
-    gap: float
-    penalty: float
+    gap: Gap
+    penalty: float | None = None
+
+    @property
+    def faces(self) -> tuple[RodFace, ...]:
+        """The faces of rods that take part: two, or one on ground."""
+        return (self.first, self.second) if isinstance(self.second, RodFace) else (self.first,)
+
+
+def given_gap(gap: float | GapTable | RoundGap, station: _Array) -> _Array:
+    """The gap at stations along the first rod, mm, shape (n,)."""
+    match gap:
+        case GapTable():
+            return np.interp(station, gap.stations, gap.gaps)
+        case RoundGap():
+            away = (station - gap.station) / gap.radius
+            # Beyond the radius there is nothing opposite: as far as a quarter turn away.
+            sagitta = 1.0 - np.sqrt(np.maximum(1.0 - away**2, 0.0))
+            return np.asarray(gap.least + gap.radius * sagitta)
+        case _:
+            return np.full(len(station), float(gap))
+
+
+def check_gap(pair: ContactPair, zone: tuple[float, float], key: str) -> None:
+    """Raise a SceneError for a gap that cannot be meant."""
+    match pair.gap:
+        case GapTable():
+            stations, gaps = pair.gap.stations, pair.gap.gaps
+            ok = len(stations) == len(gaps) >= 2
+            require(ok, key, f"{len(stations)} stations and {len(gaps)} gaps", "give as many of both, two at least")
+            ok = bool(np.all(np.isfinite([*stations, *gaps]))) and all(a < b for a, b in pairwise(stations))
+            require(ok, f"{key}.stations", list(stations), "finite stations that rise are needed, and finite gaps")
+        case RoundGap():
+            ok = math.isfinite(pair.gap.radius) and pair.gap.radius != 0.0
+            require(ok, f"{key}.radius", f"{pair.gap.radius:g}", "a radius must not be zero")
+            ok = math.isfinite(pair.gap.station) and math.isfinite(pair.gap.least)
+            require(ok, key, pair.gap, "finite lengths are needed")
+            reach = max(abs(pair.gap.station - end) for end in zone)
+            remedy = f"it must reach over the zone, which lies within {reach:g} mm of its middle"
+            require(reach <= abs(pair.gap.radius), f"{key}.radius", f"{pair.gap.radius:g}", remedy)
+        case "drawn":
+            require(isinstance(pair.second, RodFace), key, "'drawn'", "ground is not drawn; say its gap")
+        case _:
+            number = isinstance(pair.gap, int | float) and math.isfinite(pair.gap)
+            require(number, key, pair.gap, "a finite length is needed, a table, a round gap or 'drawn'")
 
 
 @dataclass(frozen=True)
@@ -58,14 +152,11 @@ class FaceGeometry:
     half_width: float
 
 
-def face_geometry(rod: Rod, face: Face, key: str) -> FaceGeometry:
-    """Where a face of a rod is; SceneError if it is not one that can be in contact."""
+def face_geometry(rod: Rod, face: Face) -> FaceGeometry | None:
+    """Where a face of a rod is; None if it is not a flat face of a straight rod."""
     line, section = rod.centre_line, rod.section
-    remedy = "contact is between flat faces of straight, untwisted rods with rectangle or box sections"
-    if not isinstance(line, Line) or line.twist != 0.0:
-        raise SceneError(key, f"'{rod.name}', which is curved or twisted", remedy)
-    if not isinstance(section, Rectangle | Box):
-        raise SceneError(key, f"'{rod.name}', whose section is a {type(section).__name__.lower()}", remedy)
+    if not isinstance(line, Line) or line.twist != 0.0 or not isinstance(section, Rectangle | Box):
+        return None
     start, end = np.array(line.start, dtype=float), np.array(line.end, dtype=float)
     tangent = (end - start) / line.length
     e2 = np.asarray(line.up) - np.dot(line.up, tangent) * tangent
@@ -77,18 +168,22 @@ def face_geometry(rod: Rod, face: Face, key: str) -> FaceGeometry:
 
 
 def require_facing(pair: ContactPair, face: FaceGeometry, other: FaceGeometry, key: str) -> None:
-    """See that the faces of a pair look at each other, over the whole zone."""
-    names = (pair.first.rod, pair.second.rod)
+    """See that two flat faces look at each other; where their rods do not cross, over the whole zone."""
+    first, second = pair.faces
+    names = (first.rod, second.rod)
     cosine = float(np.clip(np.dot(face.normal, other.normal), -1.0, 1.0))
     angle = math.degrees(math.acos(cosine))
     require(
         angle >= _LEAST_FACING_ANGLE,
         f"{key}.second.face",
-        f"'{pair.second.face}', whose outward normal is turned by {angle:.0f} degrees from the first face's",
+        f"'{second.face}', whose outward normal is turned by {angle:.0f} degrees from the first face's",
         f"choose faces that face each other (180 degrees, at least {_LEAST_FACING_ANGLE:.0f})",
     )
     length = float(np.linalg.norm(face.end - face.start))
     tangent = (face.end - face.start) / length
+    other_tangent = (other.end - other.start) / np.linalg.norm(other.end - other.start)
+    if abs(float(tangent @ other_tangent)) < _LEAST_PARALLEL:
+        return
     ends = np.array([other.start, other.end]) - face.start
     along = ends @ tangent
     begin, stop = float(np.min(along)), float(np.max(along))

@@ -11,14 +11,23 @@ the rod's start. Displacements in this frame are (u, v, w).
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
 
 from cases.centre_lines import CentreLine, Helix, Line, Path, Spline
 from cases.checks import SceneError, Vector, require, require_positive
-from cases.contacts import ContactPair, face_geometry, require_facing
+from cases.contacts import (
+    ContactPair,
+    Gap,
+    GapTable,
+    Ground,
+    RoundGap,
+    check_gap,
+    face_geometry,
+    given_gap,
+    require_facing,
+)
 from cases.loads import Gravity, LineLoad, Load, Pressure, SectionForce, SectionMoment, check_load
 from cases.materials import Material, Orthotropic
 from cases.rods import (
@@ -50,7 +59,10 @@ __all__ = [
     "ContactPair",
     "End",
     "Face",
+    "Gap",
+    "GapTable",
     "Gravity",
+    "Ground",
     "Helix",
     "Joint",
     "Line",
@@ -66,6 +78,7 @@ __all__ = [
     "Rod",
     "RodEnd",
     "RodFace",
+    "RoundGap",
     "Scene",
     "SceneError",
     "Section",
@@ -74,6 +87,7 @@ __all__ = [
     "Spline",
     "Support",
     "Vector",
+    "given_gap",
     "section_reach",
     "station_of",
 ]
@@ -174,22 +188,26 @@ class Scene:
 
     def _check_contact(self, pair: ContactPair) -> None:
         key = f"contacts.{pair.name}"
-        for side, face in (("first", pair.first), ("second", pair.second)):
+        for side, face in zip(("first", "second"), pair.faces, strict=False):
             self._rod_at(f"{key}.{side}.rod", face.rod)
-            remedy = f"write one of {', '.join(FACES)}"
-            require(face.face in FACES, f"{key}.{side}.face", f"'{face.face}'", remedy)
-        first = face_geometry(self.rod(pair.first.rod), pair.first.face, f"{key}.first.rod")
-        second = face_geometry(self.rod(pair.second.rod), pair.second.face, f"{key}.second.rod")
-        different = pair.first.rod != pair.second.rod
-        require(different, f"{key}.second.rod", f"'{pair.second.rod}'", "a pair needs two different rods")
+            require_flat_face(self.rod(face.rod), face.face, f"{key}.{side}")
         rod = self.rod(pair.first.rod)
         start, end = pair.zone
         ok = 0.0 <= start < end <= rod.length * (1.0 + 1e-9)
         remedy = f"the zone must rise and lie on rod '{rod.name}', which runs from 0 to {rod.length:g} mm"
         require(ok, f"{key}.zone", f"{start:g} .. {end:g}", remedy)
-        require(math.isfinite(pair.gap), f"{key}.gap", f"{pair.gap:g}", "a finite length is needed")
-        require_positive(pair.penalty, f"{key}.penalty", "a penalty")
-        require_facing(pair, first, second, key)
+        check_gap(pair, pair.zone, f"{key}.gap")
+        if pair.penalty is not None:
+            require_positive(pair.penalty, f"{key}.penalty", "a penalty")
+        if isinstance(pair.second, Ground):
+            if pair.second.modulus is not None:
+                require_positive(pair.second.modulus, f"{key}.second.modulus", "a bed modulus")
+            return
+        different = pair.first.rod != pair.second.rod
+        require(different, f"{key}.second.rod", f"'{pair.second.rod}'", "a pair needs two different rods")
+        flat = [face_geometry(self.rod(face.rod), face.face) for face in pair.faces]
+        if flat[0] is not None and flat[1] is not None:
+            require_facing(pair, flat[0], flat[1], key)
 
     def rod(self, name: str) -> Rod:
         """The rod called `name`; KeyError if there is none."""

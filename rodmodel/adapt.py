@@ -13,7 +13,7 @@ import numpy as np
 
 from cases.scene import Rod, Scene
 from rodmodel.holds import held_sections
-from rodmodel.pairing import opposite_stations
+from rodmodel.pairing import on_second
 from rodmodel.shape import extents
 
 # Distances from a support or joint and from a zone's end, in section heights.
@@ -34,9 +34,10 @@ def _graded_rod(scene: Scene, rod: Rod) -> Rod:
     for held in held_sections(scene, rod):
         new += [held.station + sign * height * part for sign in (-1.0, 1.0) for part in FROM_SUPPORT]
     for pair in scene.contacts:
-        if rod.name not in (pair.first.rod, pair.second.rod):
+        if rod.name not in [face.rod for face in pair.faces]:
             continue
-        start, end = sorted(opposite_stations(scene.rod(pair.first.rod), rod, np.array(pair.zone)))
+        zone = np.array(pair.zone)
+        start, end = sorted(zone if rod.name == pair.first.rod else on_second(scene, pair, zone))
         new += [start, end]
         new += [station for part in FROM_ZONE_END for station in (start + height * part, end - height * part)]
     # A border closer to a given one than the shortest element asked for would add nothing but a sliver.

@@ -29,7 +29,7 @@ from cases.scene import (
 )
 from rodmodel.centre_line import knots, roughness
 from rodmodel.mesh import SAME_BORDER, RodMesh, rod_mesh, split, split_where_rough, stretched
-from rodmodel.pairing import opposite_stations
+from rodmodel.pairing import on_second, shared_borders
 
 Array = NDArray[np.float64]
 
@@ -78,7 +78,7 @@ def natural_mesh(scene: Scene, rod: Rod, level: int | Sequence[int], order: int 
 def _held_stations(scene: Scene, rod: Rod) -> Array:
     acting = [*scene.loads, *scene.supports, *scene.beds]
     acts = [at for each in acting if each.rod == rod.name for at in _acts_at(each)]
-    zones = [station for pair in scene.contacts for station in _on_rod(scene, pair, rod, np.array(pair.zone))]
+    zones = [station for pair in scene.contacts for station in _on_rod(scene, pair, rod, shared_borders(scene, pair))]
     return np.array([0.0, rod.element_borders[-1], *acts, *zones])
 
 
@@ -97,8 +97,8 @@ def _on_rod(scene: Scene, pair: ContactPair, rod: Rod, station: Array) -> Array:
     """Stations of a pair (along its first rod) on `rod`; empty where the rod has no part in the pair."""
     if rod.name == pair.first.rod:
         return station
-    if rod.name == pair.second.rod:
-        return opposite_stations(scene.rod(pair.first.rod), rod, station)
+    if rod.name == pair.faces[-1].rod:
+        return on_second(scene, pair, station)
     return np.empty(0)
 
 

@@ -26,7 +26,7 @@ from rodmodel.pairing import facing_points, opposite_stations
 from rodmodel.section import Fields, axial_modulus
 from rodmodel.stiffness import length_slope
 from rodmodel.stretches import Stretch
-from rodmodel.system import ContactSystem, inward_directions
+from rodmodel.system import ContactSystem, opening
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -131,13 +131,15 @@ def _station_rates(system: ContactSystem, pair: str, rates: Mapping[str, Rates])
     They keep their places between the ends of their interval, which are borders of the first rod or of the second.
     """
     contact, grid = system.scene.contact(pair), system.grids[pair]
-    first, second = (system.rods[side.rod] for side in (contact.first, contact.second))
+    involved = [system.rods[face.rod] for face in contact.faces]
     ends = grid.station[:, [0, -1]].ravel()
-    opposite = opposite_stations(first.rod, second.rod, ends)
-    on_first = np.abs(first.borders[:, None] - ends).min(axis=0) < 2.0 * SAME_BORDER
-    at_ends = np.where(
-        on_first, rates[first.rod.name].at(ends), rates[second.rod.name].at(opposite) * _sense(first.rod, second.rod)
-    )
+    at_ends = rates[involved[0].rod.name].at(ends)
+    if len(involved) == 2 and grid.even:
+        first, second = involved
+        on_first = np.abs(first.borders[:, None] - ends).min(axis=0) < 2.0 * SAME_BORDER
+        opposite = opposite_stations(first.rod, second.rod, ends)
+        of_second = rates[second.rod.name].at(opposite) * _sense(first.rod, second.rod)
+        at_ends = np.where(on_first, at_ends, of_second)
     start, end = np.moveaxis(at_ends.reshape(len(at_ends), -1, 2), 2, 0)[..., None]
     place = (grid.station - grid.station[:, :1]) / (grid.station[:, -1:] - grid.station[:, :1])
     return np.asarray(start + (end - start) * place)
@@ -153,17 +155,16 @@ def _slidings(
     """
     for pair, grid in system.grids.items():
         contact = system.scene.contact(pair)
-        first, second = (system.scene.rod(side.rod) for side in (contact.first, contact.second))
-        for side in (contact.first, contact.second):
-            if side.rod != rod.rod.name:
+        for face in contact.faces:
+            if face.rod != rod.rod.name or not grid.even:
                 continue
             facing = facing_points(system.scene, contact, *grid.flat())
-            points = facing.first if side is contact.first else facing.second
-            sense = 1.0 if side is contact.first else _sense(first, second)
-            along = sense * np.repeat(moving[pair].reshape(len(moving[pair]), -1), len(grid.across), axis=1)
-            sliding = along - rates.at(points[2])
+            station, direction = opening(rod.rod, face, contact, grid, facing)
+            sense = 1.0 if face is contact.first else _sense(system.scene.rod(contact.first.rod), rod.rod)
+            along = sense * np.repeat(moving[pair].reshape(len(moving[pair]), -1), grid.weight.shape[2], axis=1)
+            sliding = along - rates.at(station)
             if np.abs(sliding).max() > SLIDING:
-                yield pair, sliding, points[2], inward_directions(rod.rod, side.face, grid, points)
+                yield pair, sliding, station, direction
 
 
 def _sense(first: Rod, second: Rod) -> float:

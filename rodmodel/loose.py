@@ -31,7 +31,7 @@ def loose_rods(scene: Scene, mirrors: Mapping[str, Mirrors]) -> tuple[Loose, ...
     """
     clamped = {support.rod for support in scene.supports if isinstance(support, Clamp)}
     motions = symmetric_motions(scene, mirrors)
-    touched = {side.rod for pair in scene.contacts for side in (pair.first, pair.second)}
+    touched = {side.rod for pair in scene.contacts for side in pair.faces}
     result = []
     for rods in _structures(scene):
         if any(rod.name in clamped for rod in rods):

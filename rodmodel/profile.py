@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from cases.scene import ContactPair, Scene
 from rodmodel.centre_line import global_points
-from rodmodel.pairing import ContactGrid, facing_points
+from rodmodel.pairing import ContactGrid, face_axes
 
 Array = NDArray[np.float64]
 
@@ -42,8 +42,11 @@ def pressure_profile(scene: Scene, pair: ContactPair, grid: ContactGrid, force: 
     Along an interval closed from end to end the pressure is the polynomial through its Lobatto points; along one that
     is closed in parts, nothing is known between them, and they are joined by straight lines.
     """
-    pressure = force.reshape(grid.weight.shape) / grid.weight
-    share = grid.weight[:, :1] / grid.weight[:, :1].sum(axis=2, keepdims=True)
+    pressure = np.divide(
+        force.reshape(grid.weight.shape), grid.weight, out=np.zeros_like(grid.weight), where=grid.weight > 0.0
+    )
+    width = grid.weight.sum(axis=2, keepdims=True)
+    share = np.divide(grid.weight, width, out=np.zeros_like(grid.weight), where=width > 0.0)
     outer = pressure[:, :, -1] if grid.symmetric else np.maximum(pressure[:, :, 0], pressure[:, :, -1])
     lines = np.array([pressure[:, :, grid.middle], (share * pressure).sum(axis=2), outer])
     stations, values = [], []
@@ -61,6 +64,7 @@ def pressure_profile(scene: Scene, pair: ContactPair, grid: ContactGrid, force: 
         values.append(drawn_values[:, first:])
     station = np.concatenate(stations)
     middle, mean, outer_values = np.concatenate(values, axis=1)
-    across = np.full(len(station), grid.across[grid.middle])
-    position = global_points(scene.rod(pair.first.rod), facing_points(scene, pair, station, across).first)
+    rod = scene.rod(pair.first.rod)
+    across = np.interp(station, grid.station.ravel(), grid.across[:, :, grid.middle].ravel())
+    position = global_points(rod, face_axes(rod, pair.first.face).points(across, station))
     return ContactProfile(station, position, middle, mean, outer_values)

@@ -15,7 +15,7 @@ from rodmodel.axial import shape_function_slopes, shape_functions
 from rodmodel.beds import BedForces, bed_forces
 from rodmodel.centre_line import by_turning, centre_points, frames, global_points, turning_at
 from rodmodel.mesh import SAME_BORDER
-from rodmodel.pairing import face_axes, facing_points
+from rodmodel.pairing import facing_points
 from rodmodel.profile import ContactProfile, pressure_profile
 from rodmodel.resultants import rigid_motions
 from rodmodel.section import (
@@ -207,10 +207,9 @@ class Solution:
             )
             force = np.where(beyond, 0.5 * force, force)
             force, gap = np.concatenate([force, force[beyond]]), np.concatenate([gap, gap[beyond]])
-        first = self.scene.rod(contact.first.rod)
-        position = global_points(first, facing_points(self.scene, contact, station, across).first)
-        normal = face_axes(first, contact.first.face).normal
-        return ContactPoints(position, np.repeat(normal[:, None], len(station), axis=1), gap, force)
+        facing = facing_points(self.scene, contact, station, across)
+        position = global_points(self.scene.rod(contact.first.rod), facing.first)
+        return ContactPoints(position, facing.normal, gap, force)
 
     def contact_profile(self, pair: str) -> ContactProfile:
         """Pressure along the zone of the pair."""

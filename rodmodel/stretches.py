@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from cases.scene import Scene
 from rodmodel.borders import Edge
+from rodmodel.pairing import is_even
 from rodmodel.system import ContactSystem
 
 Array = NDArray[np.float64]
@@ -60,12 +61,16 @@ def shortest_length(scene: Scene, pair: str) -> float:
 
 
 def moving_edges(scene: Scene, stretches: Sequence[Stretch]) -> tuple[tuple[Edge, ...], Array]:
-    """Ends of stretches that lie inside their zone, and where (mm along the first rod)."""
+    """Ends of stretches that lie inside their zone, and where (mm along the first rod).
+
+    Borders can follow edges between flat faces that run along each other, and on ground. Elsewhere edges stay where
+    the contact points show them.
+    """
     found = [
         (Edge(stretch.pair, number, outward), position)
         for number, stretch in enumerate(stretches)
         for outward, position in ((-1, stretch.start), (1, stretch.end))
-        if position not in scene.contact(stretch.pair).zone
+        if position not in scene.contact(stretch.pair).zone and is_even(scene, scene.contact(stretch.pair))
     ]
     return tuple(edge for edge, _ in found), np.array([position for _, position in found])
 

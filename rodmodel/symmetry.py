@@ -58,7 +58,7 @@ def _is_mirror_plane(scene: Scene, normal: Array) -> bool:
         return False
     if not all(_holds(support, scene.rod(support.rod), normal) for support in scene.supports):
         return False
-    faces = [side for pair in scene.contacts for side in (pair.first, pair.second)]
+    faces = [side for pair in scene.contacts for side in pair.faces]
     faces += [bed.face for bed in scene.beds] + [load.face for load in scene.loads if isinstance(load, Pressure)]
     return all(abs(normal @ face_axes(scene.rod(face.rod), face.face).normal) < TOLERANCE for face in faces)
 

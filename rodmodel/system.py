@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from cases.scene import ContactPair, Face, Rod, Scene
+from cases.scene import ContactPair, Ground, Rod, RodFace, Scene, given_gap
 from rodmodel.assembly import (
     AssembledRod,
     ElementStore,
@@ -26,19 +26,27 @@ from rodmodel.assembly import (
     point_parts,
     prescribed_parts,
 )
+from rodmodel.centre_line import frame, frames
 from rodmodel.contact import ContactProblem
 from rodmodel.joints import Loose, Skeleton, skeleton
 from rodmodel.loads import load_parts
 from rodmodel.mesh import SAME_BORDER, RodMesh
 from rodmodel.pairing import (
     ContactGrid,
+    Facing,
     contact_grid,
     face_axes,
     facing_points,
+    is_even,
     opposite_stations,
-    width_across,
+    shared_borders,
 )
 from rodmodel.section import Fields, section_values
+
+# By how much a penalty that nobody gave is stiffer than the rods, point by point.
+STIFFER = 1e3
+# Share of a face, as a part of the largest, that a contact point without one gets.
+NO_SHARE = 1e-9
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -126,8 +134,7 @@ def contact_system(
     matrix = np.zeros((ends[-1], ends[-1]))
     gap, spring = np.empty(ends[-1]), np.empty(ends[-1])
     for pair in scene.contacts:
-        gap[points[pair.name]] = pair.gap
-        spring[points[pair.name]] = pair.penalty * grids[pair.name].weight.ravel()
+        gap[points[pair.name]] = initial_gap(scene, pair, grids[pair.name])
     joints = skeleton(scene, mirrors, rods, loose)
     on_joints = np.zeros((0 if joints is None else len(joints.free), ends[-1] + 1))
     found, places = {}, {}
@@ -147,8 +154,36 @@ def contact_system(
         matrix += on_joints[:, :-1].T @ on_joints[:, :-1]
         gap += on_joints[:, :-1].T @ on_joints[:, -1]
     rigid = np.full(ends[-1], multipliers)
+    for pair in scene.contacts:
+        part = points[pair.name]
+        weight = grids[pair.name].weight.ravel()
+        # Where the shared range ends in a corner, points have no share; they must not be without a spring.
+        weight = np.maximum(weight, NO_SHARE * weight.max())
+        spring[part] = weight * _stiffness(pair, weight, np.diagonal(matrix)[part])
+        if isinstance(pair.second, Ground) and pair.second.modulus is not None:
+            rigid[part] = False
     problem = ContactProblem(matrix, gap, spring, np.ascontiguousarray(free[:, :-1].T), free[:, -1], rigid)
     return ContactSystem(scene, rods, grids, points, found, places, problem, joints, on_joints)
+
+
+def initial_gap(scene: Scene, pair: ContactPair, grid: ContactGrid) -> Array:
+    """Gap before any load at the contact points, mm, shape (n_points,)."""
+    station, across = grid.flat()
+    if pair.gap == "drawn":
+        return facing_points(scene, pair, station, across).distance
+    return given_gap(pair.gap, station)
+
+
+def _stiffness(pair: ContactPair, weight: Array, compliance: Array) -> float:
+    """Pressure per penetration, N/mm^3: the bed's, the given penalty, or one that suits the rods.
+
+    weight, compliance : share of the face, mm^2, and displacement under a unit force, mm/N, of every point, shape (n,)
+    """
+    if isinstance(pair.second, Ground) and pair.second.modulus is not None:
+        return pair.second.modulus
+    if pair.penalty is not None:
+        return pair.penalty
+    return STIFFER / float(np.mean(weight * compliance))
 
 
 def _grid(
@@ -158,36 +193,38 @@ def _grid(
     mirrors: Mapping[str, Mirrors],
 ) -> ContactGrid:
     """Contact points between the borders of both rods: enough of them to integrate the penalty energy exactly."""
-    first, second = rods[pair.first.rod], rods[pair.second.rod]
-    start, end = pair.zone
-    borders = np.sort(np.concatenate([first.borders, opposite_stations(second.rod, first.rod, second.borders)]))
-    inside = borders[(borders > start + SAME_BORDER) & (borders < end - SAME_BORDER)]
-    borders = np.concatenate([[start], inside, [end]])
-    borders = borders[np.concatenate([[True], np.diff(borders) > SAME_BORDER])]
-    intervals = np.column_stack([borders[:-1], borders[1:]])
-    n_across = max(first.level, second.level) + 2
-    across_is_x = face_axes(first.rod, pair.first.face).axis == 1
+    involved = [rods[face.rod] for face in pair.faces]
+    ends = shared_borders(scene, pair)
+    borders = [ends, involved[0].borders]
+    if len(involved) == 2 and is_even(scene, pair):
+        borders.append(opposite_stations(involved[1].rod, involved[0].rod, involved[1].borders))
+    all_borders = np.sort(np.concatenate(borders))
+    inside = all_borders[(all_borders > ends[0] + SAME_BORDER) & (all_borders < ends[-1] - SAME_BORDER)]
+    all_borders = np.concatenate([ends[:1], inside, ends[-1:]])
+    all_borders = all_borders[np.concatenate([[True], np.diff(all_borders) > SAME_BORDER])]
+    intervals = np.column_stack([all_borders[:-1], all_borders[1:]])
+    n_across = max(rod.level for rod in involved) + 2
+    across_is_x = face_axes(involved[0].rod, pair.first.face).axis == 1
     symmetric = mirrors[pair.first.rod][0 if across_is_x else 1]
-    n_along = max(first.order, second.order) + 2
-    return contact_grid(intervals, width_across(scene, pair), n_along, n_across + 1 - n_across % 2, symmetric)
+    n_along = max(rod.order for rod in involved) + 2
+    return contact_grid(scene, pair, intervals, (n_along, n_across + 1 - n_across % 2), symmetric)
 
 
 def _gap_parts(
     scene: Scene, assembled: AssembledRod, grids: Mapping[str, ContactGrid], points_of: Mapping[str, slice]
 ) -> tuple[list[Part], IntArray]:
-    """-u_n at all contact points on one rod, n being the outward normal of the face that they lie on."""
+    """What a rod adds to the gap at all contact points on it: u_n of the second face, -u_n of the first."""
     name = assembled.rod.name
     parts: list[Part] = []
     places = [np.empty(0, dtype=np.int64)]
     count = 0
     for pair in scene.contacts:
-        for side in (pair.first, pair.second):
-            if side.rod != name:
+        for face in pair.faces:
+            if face.rod != name:
                 continue
             grid = grids[pair.name]
             facing = facing_points(scene, pair, *grid.flat())
-            points = facing.first if side is pair.first else facing.second
-            found = point_parts(assembled, points[2], inward_directions(assembled.rod, side.face, grid, points))
+            found = point_parts(assembled, *opening(assembled.rod, face, pair, grid, facing))
             parts += [replace(part, columns=part.columns + count) for part in found]
             place = np.arange(points_of[pair.name].start, points_of[pair.name].stop)
             places.append(place)
@@ -195,15 +232,27 @@ def _gap_parts(
     return parts, np.concatenate(places)
 
 
-def inward_directions(rod: Rod, face: Face, grid: ContactGrid, points: Array) -> Callable[[Fields], Array]:
-    """Value of every field in the direction -n of a face at its contact points, shape (n_fields, n_points)."""
-    axes = face_axes(rod, face)
-    # Parallel rods: every station has the same points across.
-    x, y = points[:2, : len(grid.across)]
+def opening(
+    rod: Rod, face: RodFace, pair: ContactPair, grid: ContactGrid, facing: Facing
+) -> tuple[Array, Callable[[Fields], Array]]:
+    """How a face of a rod opens the gap of a pair at its contact points.
 
-    def direction(fields: Fields) -> Array:
-        values = section_values(rod.section, fields, x, y)
-        across = np.where((fields.table[0] == axes.axis)[:, None], -axes.sign * values, 0.0)
-        return np.tile(across, grid.station.size)
+    Returns the points' stations along the rod, shape (n,), and what gives the value of every field there in the
+    direction that opens the gap, shape (n_fields, n).
+    """
+    points = facing.first if face is pair.first else facing.second
+    if points is None:
+        raise ValueError(f"contact '{pair.name}': ground does not move")
+    sign = -1.0 if face is pair.first else 1.0
+    if grid.even:
+        # Every station has the same points across, and one direction.
+        count = grid.weight.shape[2]
+        one_row, direction = points[:, :count], frame(rod.centre_line) @ facing.normal[:, :count]
+        return points[2], lambda fields: np.tile(_along(rod, fields, one_row, sign * direction), grid.station.size)
+    direction = np.einsum("nci,in->cn", frames(rod.centre_line, points[2]), facing.normal)
+    return points[2], lambda fields: _along(rod, fields, points, sign * direction)
 
-    return direction
+
+def _along(rod: Rod, fields: Fields, points: Array, direction: Array) -> Array:
+    """Value of every field in given local directions (shape (3, n)) at points (x, y, s), shape (n_fields, n)."""
+    return np.asarray(section_values(rod.section, fields, points[0], points[1]) * direction[fields.table[0]])

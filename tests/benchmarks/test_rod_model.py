@@ -22,7 +22,7 @@ from rodmodel.pairing import facing_points
 from rodmodel.section import Fields, section_stiffness
 from rodmodel.stiffness import stiffness_terms
 from rodmodel.symmetry import scene_mirrors
-from rodmodel.system import ContactSystem, contact_system, inward_directions
+from rodmodel.system import ContactSystem, contact_system, opening
 
 LEVEL, ORDER = 5, 6
 
@@ -99,11 +99,8 @@ class PlainSparse:
         rows, columns, values = [], [], []
         pair, grid = self.scene.contacts[0], self.system.grids["overlap"]
         facing = facing_points(self.scene, pair, *grid.flat())
-        for (rod, places), side, points in zip(
-            rods, (pair.first, pair.second), (facing.first, facing.second), strict=True
-        ):
-            direction = inward_directions(rod.rod, side.face, grid, points)
-            for part in point_parts(rod, points[2], direction):
+        for (rod, places), face in zip(rods, pair.faces, strict=True):
+            for part in point_parts(rod, *opening(rod.rod, face, pair, grid, facing)):
                 for column, vector in zip(part.columns, part.values.reshape(-1, len(part.columns)).T, strict=True):
                     rows.append(np.full(len(vector), column))
                     columns.append(places[part.element])

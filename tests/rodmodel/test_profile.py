@@ -13,7 +13,7 @@ PAIR = SCENE.contacts[0]
 
 def profile_of(pressure, symmetric: bool = True):
     """Profile of forces that stand for a pressure given as a function of station and across."""
-    grid = contact_grid(np.array([[200.0, 230.0], [230.0, 300.0]]), (-7.5, 7.5), 8, 7, symmetric)
+    grid = contact_grid(SCENE, PAIR, np.array([[200.0, 230.0], [230.0, 300.0]]), (8, 7), symmetric)
     station, across = grid.flat()
     return pressure_profile(SCENE, PAIR, grid, np.maximum(pressure(station, across), 0.0) * grid.weight.ravel())
 
