@@ -58,9 +58,10 @@ def one_rod(
     supports: tuple[Clamp | Support, ...] = CLAMPED,
     beds: tuple[Bed, ...] = (),
     at: tuple[float, ...] = (),
+    elements: int = 12,
 ) -> Scene:
-    """One rod with elements that end where something acts (`at`), 12 of them between the short ones at its ends."""
-    rod = Rod("rod", line, section, material, tuple(sorted({*borders(line.length, size, 12), *at})))
+    """One rod with elements that end where something acts (`at`), `elements` between the short ones at its ends."""
+    rod = Rod("rod", line, section, material, tuple(sorted({*borders(line.length, size, elements), *at})))
     return Scene("both ways", (rod,), supports, loads, (), (), beds)
 
 
@@ -68,7 +69,8 @@ def spline() -> Scene:
     """A smooth line through points, whose section does not turn about it, pulled aside."""
     points = ((0.0, 0.0, 0.0), (50.0, 10.0, 0.0), (100.0, 0.0, 20.0), (130.0, 40.0, 60.0), (150.0, 100.0, 60.0))
     line = Spline(points, (0.0, 0.0, 1.0))
-    return one_rod(line, Rectangle(8.0, 12.0), 12.0, (SectionForce("rod", line.length, (3.0, 5.0, 10.0)),))
+    load = SectionForce("rod", line.length, (3.0, 5.0, 10.0))
+    return one_rod(line, Rectangle(8.0, 12.0), 12.0, (load,), elements=24)
 
 
 def heavy_helix() -> Scene:
