@@ -80,7 +80,7 @@ class Solution:
     scene : what was solved
     outcome : 'converged', 'stagnated: ...' or 'refused: ...'
     contact_solutions : contact solutions spent, one a set of border positions
-    stretches : parts of the zones found in contact, with the borders that ended on their edges
+    stretches : parts of the zones found in contact, and how far the edges may be from their ends
     system : rods and contact points on the final borders
     force : at every contact point of the system, N
     free_motion : how far loose rods move in the system's free motions
@@ -99,6 +99,11 @@ class Solution:
     states: Mapping[str, RodState]
     stored_energy: float
     cost: Cost
+
+    @property
+    def edge_uncertainty(self) -> float:
+        """How far the edges of contact may be from the ends of `stretches`, mm."""
+        return max((stretch.slack for stretch in self.stretches), default=0.0)
 
     @property
     def strain_energy(self) -> float:

@@ -4,16 +4,16 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from cases.scene import Rod, Scene
+from cases.scene import Ground, Rod, Scene
 from rodmodel.assembly import ElementStore, stored_energy
 from rodmodel.borders import Edge, Rates, border_plan, edge_rates, natural_mesh, placed_meshes
 from rodmodel.contact import ContactForces, unilateral_contact
-from rodmodel.edges import EdgeSearch, find_edges
+from rodmodel.edges import EDGE_TOLERANCE, EdgeSearch, find_edges
 from rodmodel.joints import Loose
 from rodmodel.loose import loose_rods
 from rodmodel.mesh import RodMesh
@@ -92,8 +92,12 @@ def _judged(contact: MovedContact, stored_energy: float, loose: Sequence[Loose])
         names = ", ".join(f"'{name}'" for each in loose for name in each.rods)
         return f"refused: contact does not hold {names} against the loads, and nothing else does"
     springs = forces.force**2 / problem.spring
-    penetrating = 0.5 * float(np.sum(springs, where=~problem.rigid))
-    if contact.outcome == "converged" and penetrating > PENALTY_SHARE * stored_energy:
+    penetrating = 0.5 * sum(
+        float(springs[contact.system.points[pair.name]].sum())
+        for pair in contact.system.scene.contacts
+        if not (isinstance(pair.second, Ground) and pair.second.modulus is not None)
+    )
+    if not problem.rigid.any() and contact.outcome == "converged" and penetrating > PENALTY_SHARE * stored_energy:
         share = penetrating / stored_energy
         return f"refused: the penalty is too soft, penetration holds {share:.2g} of the strain energy"
     return contact.outcome
@@ -113,7 +117,7 @@ class MovedContact:
 
     Attributes
     ----------
-    outcome : 'converged', 'stagnated: ...'
+    outcome : of the last contact solution
     solutions : contact solutions spent
     """
 
@@ -132,25 +136,29 @@ def moved_contact(
 ) -> MovedContact:
     """Find the stretches in contact on the natural borders, move borders onto their edges, and solve on those.
 
-    Where stretches appear, merge or vanish on the way, the search starts anew from what the last solution shows.
+    Where stretches appear, merge or vanish on the way, the search starts anew from what the last solution shows. Where
+    that goes on, or the search does not settle, the borders stay where they are: the stretches say how far the edges
+    may be from them.
     """
     forces = unilateral_contact(system.problem, settled=False)
     stretches, solutions = stretches_in_contact(system, forces.force), 1
     for _ in range(MOST_TOPOLOGIES):
         edges, positions = moving_edges(scene, stretches)
         if not edges or forces.outcome != "converged":
-            forces = unilateral_contact(system.problem)
-            return MovedContact(forces.outcome, solutions, stretches, system, forces)
+            break
         search = _search(scene, natural, stretches, edges, positions, system_on)
         system, solutions = search.system, solutions + len(search.steps)
         forces = unilateral_contact(system.problem)
         found = stretches_in_contact(system, forces.force)
         wanted = moved(stretches, edges, search.positions)
         if search.outcome == "converged" and same_topology(found, wanted):
-            return MovedContact(forces.outcome, solutions, wanted, system, forces)
+            settled = tuple(replace(stretch, slack=EDGE_TOLERANCE) for stretch in wanted)
+            return MovedContact(forces.outcome, solutions, settled, system, forces)
         stretches = found
-    reason = f"stagnated: the edges of contact did not settle in {solutions} solutions"
-    return MovedContact(reason, solutions, stretches, system, forces)
+        if search.outcome == "stagnated":
+            break
+    forces = unilateral_contact(system.problem)
+    return MovedContact(forces.outcome, solutions, stretches, system, forces)
 
 
 def _search(

@@ -22,11 +22,17 @@ SHORTEST = 2e-3
 
 @dataclass(frozen=True)
 class Stretch:
-    """A part of a zone in contact, mm along the first rod."""
+    """A part of a zone in contact, mm along the first rod.
+
+    Attributes
+    ----------
+    slack : how far from its ends the edges of contact may be
+    """
 
     pair: str
     start: float
     end: float
+    slack: float = 0.0
 
 
 def stretches_in_contact(system: ContactSystem, force: Array) -> tuple[Stretch, ...]:
@@ -43,7 +49,8 @@ def stretches_in_contact(system: ContactSystem, force: Array) -> tuple[Stretch, 
         for run in np.split(closed, np.flatnonzero(opening) + 1) if len(closed) else []:
             before, after = max(run[0] - 1, 0), min(run[-1] + 1, len(station) - 1)
             start, end = 0.5 * (station[run[0]] + station[before]), 0.5 * (station[run[-1]] + station[after])
-            stretches.append(Stretch(pair, *_snapped(system.scene, pair, float(start), float(end))))
+            slack = 0.5 * max(station[run[0]] - station[before], station[after] - station[run[-1]])
+            stretches.append(Stretch(pair, *_snapped(system.scene, pair, float(start), float(end)), float(slack)))
     return tuple(stretches)
 
 
