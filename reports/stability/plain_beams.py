@@ -1,0 +1,46 @@
+"""Plain two-node beams, straight and on an arc, with full integration: the textbook's elements that lock.
+
+T. J. R. Hughes, The Finite Element Method, 1987, section 5.4; on arcs, with membrane strain u' + w / R.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rodmodel.axial import gauss
+
+Array = NDArray[np.float64]
+
+
+def end_deflection(
+    length: float, radius: float, bending: float, stretching: float, shearing: float, elements: int
+) -> float:
+    """Deflection across the axis of a cantilever's end per unit force there, mm/N.
+
+    Unknowns at a node: u along, w across, rotation. Strains, with k = 1 / R: membrane u' + k w, shear w' - k u +
+    rotation, bending rotation'.
+
+    Parameters
+    ----------
+    length, radius : mm, along the arc; the radius may be infinite
+    bending, stretching, shearing : E I, E A, k G A
+    """
+    size, k = length / elements, 1.0 / radius
+    xi, weight = gauss(2)
+    stiffness = np.zeros((6, 6))
+    for point, share in zip(xi, weight, strict=True):
+        n, slope = np.array([0.5 * (1.0 - point), 0.5 * (1.0 + point)]), np.array([-1.0, 1.0]) / size
+        zero = np.zeros(2)
+        rows = (
+            (stretching, np.stack([slope, k * n, zero], axis=1).ravel()),
+            (shearing, np.stack([-k * n, slope, n], axis=1).ravel()),
+            (bending, np.stack([zero, zero, slope], axis=1).ravel()),
+        )
+        stiffness += sum(share * 0.5 * size * modulus * np.outer(row, row) for modulus, row in rows)
+    whole = np.zeros((3 * elements + 3, 3 * elements + 3))
+    for element in range(elements):
+        whole[3 * element : 3 * element + 6, 3 * element : 3 * element + 6] += stiffness
+    load = np.zeros(len(whole))
+    load[-2] = 1.0
+    return float(np.linalg.solve(whole[3:, 3:], load[3:])[-2])
