@@ -22,8 +22,10 @@ from reference3d.solution import Cost
 
 Array = NDArray[np.float64]
 
-# nodal force out of balance that a solution may leave, of the rod's largest internal nodal force
+# nodal force out of balance that a solution may leave, of the rod's largest internal nodal force; where that is all but
+# zero, as in a rod that moves as a rigid one, of this share of the largest stiffness times the largest displacement
 RESIDUAL_TOLERANCE = 1e-7
+STIFFNESS_SHARE = 1e-6
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,7 +71,8 @@ def solve_solid(scene: Scene, refinement: int) -> SolidSolution:
         displaced = found.columns @ share
         solid, beds = body.internal_forces(displaced)
         out_of_balance = solid + beds - found.load
-        largest = float(np.abs(solid).max())
+        stiffest = max(float(layer.stiffness.max()) for layer in body.layers)
+        largest = max(float(np.abs(solid).max()), STIFFNESS_SHARE * stiffest * float(np.abs(displaced).max()))
         free = out_of_balance.copy()
         for hold in held[name].values():
             plane = free[2 * hold.border].reshape(-1, 1)

@@ -215,6 +215,7 @@ def test_a_moved_clamp_carries_a_free_rod_along_without_stress():
 
     solution = solve(one_rod(RING, Circle(SIDE), (), supports=supports), 1)
 
+    assert solution.outcome == "converged"
     # turned by 0.01 about Z through (100, 0, 0): the end at (0, 100, 0) moves by 0.01 Z x (-100, 100, 0)
     np.testing.assert_allclose(
         solution.displacement("rod", np.array([RING.length]))[:, 0], [-0.9, -0.8, 0.3], rtol=1e-7
