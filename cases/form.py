@@ -53,8 +53,9 @@ def _sentences(problems: list[ErrorDetails]) -> list[str]:
     for problem in problems:
         if problem["type"] == "extra_forbidden":
             *table, key = problem["loc"]
-            known, elsewhere = _keys(schema, table), _keys_of_others(schema, table).get(str(key))
-            near = nearest(str(key), known)
+            known, other_keys = _keys(schema, table), _keys_of_others(schema, table)
+            elsewhere = other_keys.get(str(key))
+            near = nearest(str(key), known) or (None if elsewhere else nearest(str(key), tuple(other_keys)))
             if near:
                 meant.add((*table, near))
             remedy = f"did you mean '{near}'?" if near else f"the keys here are {listed(known)}"
@@ -103,7 +104,7 @@ def _key(place: Iterable[str | int], schema: dict[str, Any]) -> str:
     parts = [
         f" #{part + 1}" if isinstance(part, int) else f".{part}"
         for part, table in zip(place, _nodes(schema, place), strict=False)
-        if "discriminator" not in table  # there the place only says which of several tables was chosen
+        if "oneOf" not in table  # there the place only says which of several forms was chosen
     ]
     return "".join(parts).removeprefix(".")
 
@@ -115,6 +116,8 @@ def _nodes(schema: dict[str, Any], place: Iterable[str | int]) -> Iterator[dict[
     for part in place:
         if "discriminator" in node:
             node = {"$ref": node["discriminator"]["mapping"][part]}
+        elif "oneOf" in node:  # forms that no key names are named as in the schema
+            node = {"$ref": f"#/$defs/{part}"}
         elif isinstance(part, int):
             node = node.get("items") or node["prefixItems"][min(part, len(node["prefixItems"]) - 1)]
         else:
@@ -133,9 +136,19 @@ def _keys(schema: dict[str, Any], table: Iterable[str | int]) -> tuple[str, ...]
     return tuple(node["properties"])
 
 
+def _properties(schema: dict[str, Any], form: dict[str, Any]) -> tuple[str, ...]:
+    """Keys that a table of a form, or of one of several, may have."""
+    node = schema["$defs"][form["$ref"].rsplit("/", 1)[1]]
+    keys = dict.fromkeys(key for each in node.get("oneOf", ()) for key in _properties(schema, each))
+    return (*node.get("properties", ()), *keys)
+
+
 def _keys_of_others(schema: dict[str, Any], table: Iterable[str | int]) -> dict[str, str]:
     """Where one of several tables was chosen: the keys that the others have, and which of them has each."""
     *_, union, chosen = ({}, *_nodes(schema, table))
+    if "oneOf" in union and "discriminator" not in union:
+        forms = [_properties(schema, form) for form in union["oneOf"]]
+        return {key: f"a table of {listed(form)}" for form in forms for key in form if key not in chosen["properties"]}
     if "discriminator" not in union:
         return {}
     tag, mapping = union["discriminator"]["propertyName"], union["discriminator"]["mapping"]

@@ -13,7 +13,10 @@ from cases.scene import (
     Circle,
     Clamp,
     ContactPair,
+    Gap,
+    GapTable,
     Gravity,
+    Ground,
     Helix,
     Joint,
     Line,
@@ -29,6 +32,7 @@ from cases.scene import (
     Rod,
     RodEnd,
     RodFace,
+    RoundGap,
     Scene,
     SceneError,
     Section,
@@ -47,6 +51,7 @@ from cases.tables.centre_lines import (
     PieceTable,
     SplineTable,
 )
+from cases.tables.contacts import BedGroundTable, ContactTable, RigidGroundTable, RoundGapTable, StationGapTable
 from cases.tables.loads import (
     GravityTable,
     LineLoadTable,
@@ -87,8 +92,8 @@ def scene_from(name: str, file: CaseFile) -> Scene:
         if what the keys say does not go together.
     """
     _require_rods_known(file)
-    remedy = "needed: one [[supports]] for each end or section that is held, or [[beds]]"
-    if not file.supports and not file.beds:
+    remedy = "needed: one [[supports]] for each end or section that is held, or [[beds]] or [contacts]"
+    if not file.supports and not file.beds and not file.contacts:
         raise SceneError("supports", "no such key", remedy)
     loads = [(number, load) for number, table in enumerate(file.loads, 1) for load in _loads(number, table, file)]
     with _numbered_as_in_file([number for number, _ in loads]):
@@ -97,10 +102,7 @@ def scene_from(name: str, file: CaseFile) -> Scene:
             rods=_rods(file),
             supports=tuple(_support(f"supports #{number}", table) for number, table in enumerate(file.supports, 1)),
             loads=tuple(load for _, load in loads),
-            contacts=tuple(
-                ContactPair(key, _face(pair.first), _face(pair.second), pair.zone, pair.gap, pair.penalty)
-                for key, pair in file.contacts.items()
-            ),
+            contacts=tuple(_contact(key, pair) for key, pair in file.contacts.items()),
             joints=tuple(Joint(tuple(RodEnd(end.rod, end.end) for end in joint.ends)) for joint in file.joints),
             beds=tuple(Bed(_face(bed.face), bed.start, bed.end, bed.modulus) for bed in file.beds),
         )
@@ -140,7 +142,9 @@ def _require_rods_known(file: CaseFile) -> None:
             case _:
                 named.append((f"loads #{i}.rod", load.rod))
     for key, pair in file.contacts.items():
-        named += [(f"contacts.{key}.first.rod", pair.first.rod), (f"contacts.{key}.second.rod", pair.second.rod)]
+        named.append((f"contacts.{key}.first.rod", pair.first.rod))
+        if isinstance(pair.second, RodFaceTable):
+            named.append((f"contacts.{key}.second.rod", pair.second.rod))
     for i, joint in enumerate(file.joints, 1):
         named += [(f"joints #{i}.ends #{j}.rod", end.rod) for j, end in enumerate(joint.ends, 1)]
     named += [(f"beds #{i}.face.rod", bed.face.rod) for i, bed in enumerate(file.beds, 1)]
@@ -211,6 +215,26 @@ def _piece(table: PieceTable) -> Line | Helix | Spline:
 
 def _face(table: RodFaceTable) -> RodFace:
     return RodFace(table.rod, table.face)
+
+
+def _contact(name: str, table: ContactTable) -> ContactPair:
+    second: RodFace | Ground
+    match table.second:
+        case RodFaceTable():
+            second = _face(table.second)
+        case RigidGroundTable():
+            second = Ground()
+        case BedGroundTable():
+            second = Ground(table.second.modulus)
+    gap: Gap
+    match table.gap:
+        case StationGapTable():
+            gap = GapTable(table.gap.stations, table.gap.gaps)
+        case RoundGapTable():
+            gap = RoundGap(table.gap.radius, table.gap.station, table.gap.least)
+        case _:
+            gap = table.gap
+    return ContactPair(name, _face(table.first), second, table.zone, gap, table.penalty)
 
 
 def _support(key: str, table: SupportTable) -> Clamp | Support:

@@ -12,9 +12,9 @@ from pydantic import Field, PlainValidator, StrictInt, StrictStr, WithJsonSchema
 
 from cases.case import Quantity
 from cases.tables.centre_lines import CentreLineTable
+from cases.tables.contacts import ContactTable
 from cases.tables.loads import LoadTable
 from cases.tables.materials import MaterialTable
-from cases.tables.places import RodFaceTable
 from cases.tables.sections import SectionTable
 from cases.tables.supports import BedTable, JointTable, SupportTable
 from cases.tables.values import (
@@ -22,12 +22,10 @@ from cases.tables.values import (
     Length,
     Name,
     Point,
-    StressPerLength,
     Table,
     Text,
     Tolerance,
     Value,
-    with_unit,
 )
 from cases.units import UnitError
 
@@ -46,21 +44,6 @@ class RodTable(Table):
     and beds at its end."""
     centre_line: CentreLineTable
     """The rod's centre line, as table [rods.NAME.centre_line]."""
-
-
-class ContactTable(Table):
-    """Two faces that may touch without friction."""
-
-    first: RodFaceTable
-    """The first face, such as { rod = "lower", face = "top" }."""
-    second: RodFaceTable
-    """The second face, such as { rod = "upper", face = "bottom" }."""
-    zone: tuple[Length, Length]
-    """Where the faces may touch: two rising lengths [from, to] along the first rod from its start."""
-    gap: Annotated[float, *with_unit("mm"), Field(ge=0.0)]
-    """Distance of the faces before loading, a length, not negative; it counts as given, whatever is drawn."""
-    penalty: StressPerLength
-    """Pressure per penetration, a stress per length, such as "1e6 N/mm^3"; positive."""
 
 
 def _for_elements(least: int, most: int) -> tuple[PlainValidator, WithJsonSchema]:
@@ -154,7 +137,7 @@ class CaseFile(Table):
     rods: Annotated[dict[Name, RodTable], ONLY_NAMES]
     """The rods, one table [rods.NAME] each."""
     supports: tuple[SupportTable, ...] = ()
-    """The supports, one [[supports]] each; at least one unless there are [[beds]]."""
+    """The supports, one [[supports]] each; at least one unless there are [[beds]] or [contacts]."""
     joints: tuple[JointTable, ...] = ()
     """Ends of rods that are rigidly joined, one [[joints]] for each joint."""
     beds: tuple[BedTable, ...] = ()

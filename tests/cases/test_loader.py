@@ -75,7 +75,99 @@ MISTAKES = [
     ("decimal comma", [('"0.5 mm"', '"0,5 mm"')], "contacts.overlap.gap", '"0,5 mm"', "length"),
     ("negative width", [('width = "15 mm"', 'width = "-15 mm"')], "sections.square.width", "-15", "must be positive"),
     ("no height", [('height = "15 mm"', "height = 0")], "sections.square.height", "0", "must be positive"),
-    ("negative gap", [('"0.5 mm"', '"-0.5 mm"')], "contacts.overlap.gap", '"-0.5 mm"', "not negative"),
+    ("no kind of gap", [('"0.5 mm"', '"draw"')], "contacts.overlap.gap", '"draw"', 'write "drawn"'),
+    (
+        "gap table without gaps",
+        [('"0.5 mm"', "{ stations = [0, 1] }")],
+        "contacts.overlap.gap.gaps",
+        "no such key",
+        "one length for each",
+    ),
+    (
+        "gap at one station",
+        [('"0.5 mm"', "{ stations = [0], gaps = [0] }")],
+        "contacts.overlap.gap.stations",
+        "[0]",
+        "at least two",
+    ),
+    (
+        "bad gap in a table",
+        [('"0.5 mm"', "{ stations = [200, 300], gaps = [0, '1 N'] }")],
+        "contacts.overlap.gap.gaps #2",
+        '"1 N"',
+        "a length",
+    ),
+    (
+        "gaps that are too few",
+        [('"0.5 mm"', "{ stations = [200, 250, 300], gaps = [0, 1] }")],
+        "contacts.overlap.gap",
+        "3 stations and 2 gaps",
+        "as many of both",
+    ),
+    (
+        "round gap nowhere",
+        [('"0.5 mm"', "{ radius = 500 }")],
+        "contacts.overlap.gap.station",
+        "no such key",
+        "Where the gap is least",
+    ),
+    (
+        "keys of two gaps",
+        [('"0.5 mm"', "{ radius = 500, stations = [0, 1], gaps = [0, 1] }")],
+        "contacts.overlap.gap.radius",
+        "unknown key",
+        "it belongs to a table of 'radius', 'station', 'least'",
+    ),
+    # ground
+    (
+        "unknown ground",
+        [('second = { rod = "upper", face = "bottom" }', 'second = { ground = "sand" }')],
+        "contacts.overlap.second.ground",
+        '"sand"',
+        "'bed', 'rigid'",
+    ),
+    (
+        "bed without modulus",
+        [('second = { rod = "upper", face = "bottom" }', 'second = { ground = "bed" }')],
+        "contacts.overlap.second.modulus",
+        "no such key",
+        '"50 N/mm^3"',
+    ),
+    (
+        "rigid ground with a modulus",
+        [('second = { rod = "upper", face = "bottom" }', 'second = { ground = "rigid", modulus = 50 }')],
+        "contacts.overlap.second.modulus",
+        "unknown key",
+        'it belongs to ground = "bed"',
+    ),
+    (
+        "face of ground",
+        [('second = { rod = "upper", face', 'second = { ground = "rigid", face')],
+        "contacts.overlap.second.face",
+        "unknown key",
+        "the keys here are 'ground'",
+    ),
+    (
+        "misspelt ground",
+        [('second = { rod = "upper", face = "bottom" }', 'second = { grund = "rigid" }')],
+        "contacts.overlap.second.grund",
+        "unknown key",
+        "did you mean 'ground'?",
+    ),
+    (
+        "ground that attracts",
+        [('second = { rod = "upper", face = "bottom" }', 'second = { ground = "bed", modulus = -1 }')],
+        "contacts.overlap.second.modulus",
+        "-1",
+        "must be positive",
+    ),
+    (
+        "ground as drawn",
+        [('second = { rod = "upper", face = "bottom" }', 'second = { ground = "rigid" }'), ('"0.5 mm"', '"drawn"')],
+        "contacts.overlap.gap",
+        "drawn",
+        "say its gap",
+    ),
     ("infinite length", [('width = "15 mm"', "width = inf")], "sections.square.width", "inf", "must be finite"),
     ("not a number", [("= 0.3", "= nan")], "materials.lower.poisson_ratio", "nan", "a number"),
     ("truth value for a number", [("= 0.3", "= true")], "materials.lower.poisson_ratio", "true", "a number"),
@@ -561,6 +653,7 @@ def test_a_mistake_is_named_with_file_key_find_and_remedy(message, text, edits, 
 def test_a_case_that_nothing_holds_is_refused(message):
     start, _, rest = EVERYTHING.partition("[[supports]]")
     no_supports = start + "[[loads]]" + rest.partition("[[loads]]")[2]
+    no_supports = no_supports.partition("[contacts.rest]")[0] + "[rod_model]" + rest.partition("[rod_model]")[2]
 
     assert message(no_supports).startswith("mine.toml: supports: found no such key; needed: one [[supports]] for each")
 
@@ -569,6 +662,12 @@ def test_a_bed_alone_may_hold_a_case(scene):
     start, _, rest = EVERYTHING.partition("[[supports]]")
 
     assert scene(start + "[[beds]]" + rest.partition("[[beds]]")[2]).supports == ()
+
+
+def test_contact_alone_may_hold_a_case(scene):
+    start, _, rest = EVERYTHING.partition("[[supports]]")
+
+    assert scene(start + "[[loads]]" + rest.partition("[[loads]]")[2]).supports == ()
 
 
 def test_a_case_with_no_mistake_loads(tmp_path):

@@ -12,7 +12,9 @@ from cases.scene import (
     Circle,
     Clamp,
     ContactPair,
+    GapTable,
     Gravity,
+    Ground,
     Helix,
     Joint,
     Line,
@@ -26,12 +28,14 @@ from cases.scene import (
     Rod,
     RodEnd,
     RodFace,
+    RoundGap,
     Scene,
     SceneError,
     SectionForce,
     SectionMoment,
     Spline,
     Support,
+    given_gap,
 )
 
 STEEL = Material(200000.0, 0.3)
@@ -103,7 +107,13 @@ def test_faces_that_face_each_other_are_taken(upper, second):
         pytest.param("top", rod("upper", (201.0, 15.5, 0.0), (500.0, 15.5, 0.0)), "bottom", "zone", id="too late"),
         pytest.param("top", rod("upper", (100.0, 15.5, 0.0), (299.0, 15.5, 0.0)), "bottom", "zone", id="too short"),
         pytest.param("top", rod("upper", (400.0, 15.5, 0.0), (700.0, 15.5, 0.0)), "bottom", "zone", id="nowhere"),
-        pytest.param("top", rod("upper", (250.0, 15.5, -99.0), (250.0, 15.5, 99.0)), "bottom", "zone", id="across"),
+        pytest.param(
+            "top",
+            rod("upper", (250.0, 15.5, -99.0), (250.0, 15.5, 99.0)),
+            "left",
+            "second.face",
+            id="across, but with its side",
+        ),
     ],
 )
 def test_faces_that_cannot_touch_over_the_zone_are_refused(first, upper, second, key):
@@ -112,6 +122,39 @@ def test_faces_that_cannot_touch_over_the_zone_are_refused(first, upper, second,
     error = refusal(scene, rods=(LOWER, upper), contacts=(pair,))
 
     assert error.key == f"contacts.overlap.{key}"
+
+
+@pytest.mark.parametrize("end", [(250.0, 15.5, 99.0), (350.0, 15.5, 99.0)], ids=["at a right angle", "askew"])
+def test_rods_may_cross(end):
+    crossing = rod("upper", (250.0, 15.5, -99.0), end)
+
+    assert scene(rods=(LOWER, crossing)).contacts == (OVERLAP,)
+
+
+@pytest.mark.parametrize("modulus", [None, 50.0], ids=["rigid", "bed"])
+def test_a_face_may_lie_on_ground(modulus):
+    resting = ContactPair("rest", RodFace("lower", "bottom"), Ground(modulus), (0.0, 300.0), 0.0)
+
+    assert scene(contacts=(resting,)).contact("rest").faces == (resting.first,)
+
+
+@pytest.mark.parametrize("gap", [-0.2, 3.0, GapTable((200.0, 260.0), (0.0, -0.1)), RoundGap(-50.0, 250.0), "drawn"])
+def test_gaps_may_be_negative_vary_and_be_as_drawn(gap):
+    assert scene(contacts=(replace(OVERLAP, gap=gap),)).contact("overlap").gap == gap
+
+
+@pytest.mark.parametrize(
+    ("gap", "expected"),
+    [
+        (-0.2, [-0.2, -0.2, -0.2]),
+        (GapTable((10.0, 20.0), (1.0, 3.0)), [1.0, 2.0, 3.0]),
+        # 5 - sqrt(25 - x^2) at x = -4, 1, and beyond the radius
+        (RoundGap(5.0, 14.0, 0.5), [2.5, 5.5 - 24.0**0.5, 5.5]),
+        (RoundGap(-5.0, 14.0, 0.5), [-1.5, 24.0**0.5 - 4.5, -4.5]),
+    ],
+)
+def test_a_gap_is_told_at_any_station(gap, expected):
+    np.testing.assert_allclose(given_gap(gap, np.array([10.0, 15.0, 20.0])), expected, rtol=1e-14)
 
 
 def test_half_the_width_counts_along_the_faces_not_across_them():
@@ -132,6 +175,18 @@ def test_half_the_width_counts_along_the_faces_not_across_them():
         ({"zone": (-1.0, 300.0)}, "zone"),
         ({"zone": (float("nan"), 300.0)}, "zone"),
         ({"gap": float("inf")}, "gap"),
+        ({"gap": "as drawn"}, "gap"),
+        ({"gap": "drawn", "second": Ground()}, "gap"),
+        ({"gap": GapTable((200.0, 300.0), (0.0,))}, "gap"),
+        ({"gap": GapTable((200.0,), (0.0,))}, "gap"),
+        ({"gap": GapTable((300.0, 200.0), (0.0, 0.0))}, "gap.stations"),
+        ({"gap": GapTable((200.0, 300.0), (0.0, math.nan))}, "gap.stations"),
+        ({"gap": RoundGap(0.0, 250.0)}, "gap.radius"),
+        ({"gap": RoundGap(49.0, 250.0)}, "gap.radius"),  # does not reach over the zone
+        ({"gap": RoundGap(500.0, math.inf)}, "gap"),
+        ({"second": Ground(0.0)}, "second.modulus"),
+        ({"second": Ground(), "zone": (200.0, 300.1)}, "zone"),
+        ({"second": Ground(), "first": RodFace("lower", "under")}, "first.face"),
         ({"penalty": 0.0}, "penalty"),
         ({"first": RodFace("nobody", "top")}, "first.rod"),
         ({"second": RodFace("lower", "bottom")}, "second.rod"),
@@ -455,26 +510,29 @@ def test_loads_at_the_rounded_end_of_a_curved_rod_are_set_to_it(written):
     assert error.key == "loads #1.position"
 
 
+@pytest.mark.parametrize("section", [Circle(15.0), Ring(15.0, 10.0), Polygon(SHARP)], ids=["bar", "tube", "polygon"])
+def test_contact_is_between_faces_that_are_flat_across(section):
+    error = refusal(scene, rods=(LOWER, replace(UPPER, section=section)))
+
+    assert error.key == "contacts.overlap.second.rod"
+    assert "flat faces" in error.remedy
+
+
 @pytest.mark.parametrize(
-    ("other", "remedy"),
+    "other",
     [
-        pytest.param({"section": Circle(15.0)}, "flat faces", id="round"),
-        pytest.param({"centre_line": replace(UPPER.centre_line, twist=0.1)}, "untwisted", id="twisted"),
+        pytest.param({"centre_line": replace(UPPER.centre_line, twist=0.1)}, id="twisted"),
         pytest.param(
             {
                 "centre_line": Helix((200.0, 15.5, 0.0), (200.0, 200.0, 0.0), AXIS, 1.0, (0.0, 1.0, 0.0)),
                 "element_borders": (0.0, 184.5),
             },
-            "straight",
             id="curved",
         ),
     ],
 )
-def test_contact_is_between_flat_faces_of_straight_rods(other, remedy):
-    error = refusal(scene, rods=(LOWER, replace(UPPER, **other)))
-
-    assert error.key == "contacts.overlap.second.rod"
-    assert remedy in error.remedy
+def test_faces_of_twisted_and_curved_rods_may_touch(other):
+    assert scene(rods=(LOWER, replace(UPPER, **other))).contacts == (OVERLAP,)
 
 
 def test_boxes_may_touch_like_rectangles():

@@ -13,7 +13,9 @@ from cases.scene import (
     Circle,
     Clamp,
     ContactPair,
+    GapTable,
     Gravity,
+    Ground,
     Helix,
     Joint,
     Line,
@@ -26,6 +28,7 @@ from cases.scene import (
     Ring,
     RodEnd,
     RodFace,
+    RoundGap,
     SectionForce,
     SectionMoment,
     Spline,
@@ -148,6 +151,44 @@ def test_contacts_are_those_written(scene):
     rest = ContactPair("rest", RodFace("beam", "top"), RodFace("strip", "bottom"), (0.0, 400.0), 1.0, 1000.0)
 
     assert scene.contacts == (rest,)
+
+
+GROUNDS = {'{ ground = "rigid" }': Ground(), '{ ground = "bed", modulus = "50 N/mm^3" }': Ground(50.0)}
+GAPS = {
+    '"-0.1 mm"': -0.1,
+    '"drawn"': "drawn",
+    '{ stations = [0, "0.4 m"], gaps = ["0.5 mm", -1] }': GapTable((0.0, 400.0), (0.5, -1.0)),
+    '{ radius = "50 cm", station = 50 }': RoundGap(500.0, 50.0, 0.0),
+    '{ radius = "-50 cm", station = 50, least = "1 mm" }': RoundGap(-500.0, 50.0, 1.0),
+}
+
+
+@pytest.fixture
+def contact(tmp_path):
+    """The contact pair of the case of everything with a change."""
+
+    def load(old, new):
+        text = Path(__file__).with_name("everything.toml").read_text(encoding="utf-8")
+        assert old in text
+        path = tmp_path / "contact.toml"
+        path.write_text(text.replace(old, new), encoding="utf-8")
+        return load_case(path).scene.contact("rest")
+
+    return load
+
+
+@pytest.mark.parametrize("written", GROUNDS)
+def test_ground_is_that_written(contact, written):
+    assert contact('{ rod = "strip", face = "bottom" }', written).second == GROUNDS[written]
+
+
+@pytest.mark.parametrize("written", GAPS)
+def test_gaps_are_those_written(contact, written):
+    assert contact('gap = "1 mm"', f"gap = {written}").gap == GAPS[written]
+
+
+def test_a_penalty_may_be_left_out(contact):
+    assert contact('penalty = "1e3 N/mm^3"\n', "").penalty is None
 
 
 def test_without_names_gravity_pulls_every_rod(tmp_path):
