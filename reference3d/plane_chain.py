@@ -108,7 +108,7 @@ def factorise(layer: Callable[[int], Array], kind: IntArray, held: Mapping[int, 
             across[start.fixed] = 0.0
         if end is not None:
             across[:, end.fixed] = 0.0
-        factor = cholesky(own)
+        factor = cholesky(own.T)  # symmetric; in the order that LAPACK takes
         coupling = forward(factor, across)
         carried = second - coupling.T @ coupling
         border.append(factor)
@@ -116,7 +116,7 @@ def factorise(layer: Callable[[int], Array], kind: IntArray, held: Mapping[int, 
     assert carried is not None  # there is at least one layer
     if len(kind) in held:
         _hold(carried, held[len(kind)].fixed)
-    border.append(cholesky(carried))
+    border.append(cholesky(carried.T))
     kinds = sorted(middle)
     return PlaneChain(
         np.searchsorted(kinds, kind).astype(np.int64),
@@ -132,8 +132,9 @@ def _condense(matrix: Array) -> tuple[Array, Array, Array]:
     """L_m, L_m^-1 K_m,(start, end) and the matrix condensed onto start and end."""
     size = len(matrix) // 3
     ends, inside = np.r_[:size, 2 * size : 3 * size], slice(size, 2 * size)
-    factor = cholesky(matrix[inside, inside])
-    coupling = forward(factor, matrix[inside][:, ends])
+    # symmetric, so that transposes are what LAPACK takes without turning them round
+    factor = cholesky(matrix[inside, inside].T)
+    coupling = forward(factor, matrix[ends, inside].T)
     return factor, coupling, matrix[np.ix_(ends, ends)] - coupling.T @ coupling
 
 

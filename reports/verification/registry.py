@@ -7,10 +7,18 @@ from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeElapsed
 from rich.progress import Progress as Bars
 
 from reports.processes import Progress, in_own_process
-from reports.verification import bending, curved, patch, published, structures, torsion
+from reports.verification import bending, curved, patch, published, solid, structures, torsion
 from reports.verification.check import Group, Outcome, Reference
 
-GROUPS: tuple[Group, ...] = (patch.GROUP, torsion.GROUP, bending.GROUP, curved.GROUP, structures.GROUP, published.GROUP)
+GROUPS: tuple[Group, ...] = (
+    patch.GROUP,
+    torsion.GROUP,
+    bending.GROUP,
+    curved.GROUP,
+    structures.GROUP,
+    published.GROUP,
+    solid.GROUP,
+)
 CHECKS = {check.name: check for group in GROUPS for check in group.checks}
 
 

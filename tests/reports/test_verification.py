@@ -13,7 +13,7 @@ import pytest
 
 from reports import command_line
 from reports.processes import ProcessFailed
-from reports.verification import bending, curved, published, torsion, wording
+from reports.verification import bending, curved, published, solid, torsion, wording
 from reports.verification.check import Check, Outcome, Reference
 from reports.verification.page import FILE_NAME, render, write_verification
 from reports.verification.registry import CHECKS, GROUPS
@@ -27,7 +27,9 @@ def outcome_at_its_level(check: Check) -> Outcome:
     return Outcome(alone, alone.reference(), (alone.value(alone.at_level),))
 
 
-@pytest.mark.parametrize("check", ALL, ids=lambda check: check.name)
+@pytest.mark.parametrize(
+    "check", [pytest.param(each, id=each.name, marks=[pytest.mark.slow] * (each in solid.GROUP.checks)) for each in ALL]
+)
 def test_the_rod_model_meets_the_tolerance_at_its_level(check: Check) -> None:
     outcome = outcome_at_its_level(check)
 
