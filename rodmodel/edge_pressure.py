@@ -33,6 +33,9 @@ IntArray = NDArray[np.int64]
 
 # Points that slide less than this along an element, mm per mm of an edge, do so by round-off.
 SLIDING = 1e-6
+# Steps of the multipliers that make the adjoint forces those of rigid points, as the forces are. With the springs' own
+# alone, slopes at the end of a stretch of half a height are off by 14 %, with these by 1 %.
+ADJOINT_STEPS = 3
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,7 +81,11 @@ def edge_pressures(system: ContactSystem, stretches: Sequence[Stretch], edges: S
         right[chosen[number], number] = -1.0 / grid.weight[point]
     joined = ActiveSet(held, problem)
     force, motion = joined.settled_forces()
-    adjoint, adjoint_motion = joined.respond(right, np.zeros((len(problem.motion_load), len(edges))))
+    multiplier = np.zeros_like(right)
+    for _ in range(ADJOINT_STEPS):
+        on_motions = np.zeros((len(problem.motion_load), len(edges)))
+        adjoint, adjoint_motion = joined.respond(right - multiplier / problem.spring[:, None], on_motions)
+        multiplier = np.where(problem.rigid[:, None], adjoint, 0.0)
     value = -right[chosen, np.arange(len(edges))] * force[chosen]
     return EdgePressures(system, value, chosen, force, motion, adjoint, adjoint_motion)
 

@@ -30,6 +30,9 @@ MOST_STEPS = 12
 LONGEST_STEP = 0.1
 # Steps up to this part of a stretch's length are short, and do what they should if pressures fall to this part.
 SHORT_STEP, FALL = 0.1, 0.3
+# Pressure times this power of the stretch's length is close to linear in its length: the power 1 where a long stretch
+# ends, 2 where a short one does.
+POWER = 1.5
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,8 +62,9 @@ def find_edges(
 ) -> EdgeSearch:
     """Roots of the edge pressures in the edge positions, all at once, by Newton's method.
 
-    The unknowns are pressure times length of the stretch, which are closer to linear in the positions than pressures
-    are: a short stretch carries its force on little length. A single edge is kept between what its signs have shown.
+    The unknowns are pressures times a power of the stretch's length, which are closer to linear in the positions than
+    pressures are: a short stretch carries its force on little length. A single edge is kept between what its signs have
+    shown.
 
     Parameters
     ----------
@@ -78,8 +82,8 @@ def find_edges(
         system, rates = system_at(positions)
         pressures = edge_pressures(system, current, edges)
         tried.append(positions)
-        values.append(pressures.value * _lengths(current, edges))
-        bracket = bracket.tightened(outward[0] * positions[0], pressures.value[0])
+        values.append(pressures.value * _lengths(current, edges) ** POWER)
+        bracket = bracket.tightened(outward[0] * positions[0], values[-1][0])
         if jacobian is not None:
             change, before = outward * (positions - tried[-2]), values[-2]
             # A short step that does what it should leaves slopes that need no more than Broyden's correction.
@@ -109,7 +113,7 @@ def _step(
     """How far each edge goes out of contact, mm, shape (n_edges,).
 
     stretches : with their ends where the edges are
-    value, jacobian : pressure times length of stretch at the edges, N/mm, and its derivatives by their ways out
+    value, jacobian : pressure times a power of the stretch's length at the edges, and its derivatives by their ways out
     """
     zones = np.array([scene.contact(edge.pair).zone for edge in edges])
     longest, retreat = LONGEST_STEP * (zones[:, 1] - zones[:, 0]), _retreats(stretches, edges)
@@ -126,12 +130,13 @@ def _step(
 def _jacobian(
     pressures: EdgePressures, stretches: Sequence[Stretch], edges: Sequence[Edge], rates: Mapping[str, Rates]
 ) -> Array:
-    """Derivatives of pressure times length of stretch by the edges' ways out, MPa, shape (n_edges, n_edges)."""
+    """Derivatives of pressure times a power of length by the edges' ways out, shape (n_edges, n_edges)."""
     outward = np.array([edge.outward for edge in edges])
     number = np.array([edge.stretch for edge in edges])
-    by_length = pressures.value[:, None] * (number[:, None] == number)
-    by_pressure = edge_slopes(pressures, edges, rates) * outward * _lengths(stretches, edges)[:, None]
-    return np.asarray(by_pressure + by_length)
+    length = _lengths(stretches, edges)[:, None]
+    by_length = POWER * pressures.value[:, None] * (number[:, None] == number)
+    by_pressure = edge_slopes(pressures, edges, rates) * outward * length
+    return np.asarray((by_pressure + by_length) * length ** (POWER - 1.0))
 
 
 def _lengths(stretches: Sequence[Stretch], edges: Sequence[Edge]) -> Array:
@@ -152,29 +157,35 @@ class Bracket:
     """What the signs seen so far say of a single edge, in a coordinate that grows out of contact.
 
     The pressure at an edge need not fall steadily: on a stretch much too short the held elements pull like a clamp. So
-    a step is believed only where it goes the way that the sign asks for, and stays within what is known.
+    a step is believed only where it goes the way that the sign asks for, stays within what is known, and, once both
+    signs have been seen, the one before it did what it should.
 
     Attributes
     ----------
     inner, outer : last position with positive and first with negative pressure, mm
+    value : last value of the pressure
+    falling : whether it is less than half of the one before
     """
 
     inner: float = -np.inf
     outer: float = np.inf
+    value: float = np.inf
+    falling: bool = True
 
     def tightened(self, position: float, value: float) -> Bracket:
         """The bracket with one more pressure known."""
-        return replace(self, inner=position) if value > 0.0 else replace(self, outer=position)
+        known = replace(self, value=value, falling=abs(value) < 0.5 * abs(self.value))
+        return replace(known, inner=position) if value > 0.0 else replace(known, outer=position)
 
     def safe(self, position: Array, value: Array, step: Array, longest: Array, retreat: Array) -> Array:
         """The step where it can be believed, else to the middle of the bracket, else far the way the sign asks for.
 
         longest, retreat : largest steps outward and inward, mm
         """
-        target = position[0] + step[0]
-        if step[0] * value[0] >= 0.0 and self.inner <= target <= self.outer:
+        target, bounded = position[0] + step[0], bool(np.isfinite(self.outer - self.inner))
+        if step[0] * value[0] >= 0.0 and self.inner <= target <= self.outer and (self.falling or not bounded):
             return step
-        if np.isfinite(self.outer - self.inner):
+        if bounded:
             return np.array([0.5 * (self.inner + self.outer) - position[0]])
         return longest if value[0] > 0.0 else -retreat
 

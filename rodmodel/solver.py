@@ -61,7 +61,8 @@ def solve(scene: Scene, level: Grades = 5, order: Grades = 6, multipliers: bool 
         return contact_system(scene, mirrors, meshes, store, loose, multipliers)
 
     natural = {rod.name: natural_mesh(scene, rod, _grades_of(level, rod), _grades_of(order, rod)) for rod in scene.rods}
-    system = system_on(natural)
+    # Where contact is shows at the lowest level already.
+    system = system_on({name: replace(mesh, levels=np.ones_like(mesh.levels)) for name, mesh in natural.items()})
     ready = time.perf_counter()
     contact = moved_contact(scene, natural, system, system_on)
     forces = contact.forces
@@ -134,30 +135,32 @@ def moved_contact(
     system: ContactSystem,
     system_on: SystemOn,
 ) -> MovedContact:
-    """Find the stretches in contact on the natural borders, move borders onto their edges, and solve on those.
+    """Find the stretches in contact, move borders onto their edges, and solve on those.
 
     Where stretches appear, merge or vanish on the way, the search starts anew from what the last solution shows. Where
     that goes on, or the search does not settle, the borders stay where they are: the stretches say how far the edges
     may be from them.
+
+    system : on the natural borders, at any level: its solution tells where to begin
     """
     forces = unilateral_contact(system.problem, settled=False)
-    stretches, solutions = stretches_in_contact(system, forces.force), 1
+    stretches, solutions = stretches_in_contact(system, forces), 1
     for _ in range(MOST_TOPOLOGIES):
         edges, positions = moving_edges(scene, stretches)
-        if not edges or forces.outcome != "converged":
-            break
-        search = _search(scene, natural, stretches, edges, positions, system_on)
-        system, solutions = search.system, solutions + len(search.steps)
+        search = _search(scene, natural, stretches, edges, positions, system_on) if edges else None
+        system = system_on(natural) if search is None else search.system
+        solutions += 1 if search is None else len(search.steps)
         forces = unilateral_contact(system.problem)
-        found = stretches_in_contact(system, forces.force)
-        wanted = moved(stretches, edges, search.positions)
-        if search.outcome == "converged" and same_topology(found, wanted):
-            settled = tuple(replace(stretch, slack=EDGE_TOLERANCE) for stretch in wanted)
-            return MovedContact(forces.outcome, solutions, settled, system, forces)
+        found = stretches_in_contact(system, forces)
+        if search is not None and search.outcome == "converged":
+            wanted = moved(stretches, edges, search.positions)
+            if same_topology(found, wanted):
+                settled = tuple(replace(stretch, slack=EDGE_TOLERANCE) for stretch in wanted)
+                return MovedContact(forces.outcome, solutions, settled, system, forces)
         stretches = found
-        if search.outcome == "stagnated":
+        stagnated = search is not None and search.outcome == "stagnated"
+        if stagnated or forces.outcome != "converged" or not moving_edges(scene, found)[0]:
             break
-    forces = unilateral_contact(system.problem)
     return MovedContact(forces.outcome, solutions, stretches, system, forces)
 
 

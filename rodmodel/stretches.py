@@ -10,6 +10,8 @@ from numpy.typing import NDArray
 
 from cases.scene import Scene
 from rodmodel.borders import Edge
+from rodmodel.contact import ContactForces
+from rodmodel.mesh import SAME_BORDER
 from rodmodel.pairing import is_even
 from rodmodel.system import ContactSystem
 
@@ -18,6 +20,8 @@ Array = NDArray[np.float64]
 # Shortest stretch as a part of the zone: contact that wants less is contact at a corner or a point, and its edges are
 # known to that length. An edge as close to the zone's end is on it.
 SHORTEST = 2e-3
+# Where contact may end between a closed and an open station, as parts of the way.
+BETWEEN = (0.1, 0.9)
 
 
 @dataclass(frozen=True)
@@ -35,23 +39,49 @@ class Stretch:
     slack: float = 0.0
 
 
-def stretches_in_contact(system: ContactSystem, force: Array) -> tuple[Stretch, ...]:
-    """Stretches closed in the middle of the width, each end half way between a closed and an open station.
+def stretches_in_contact(system: ContactSystem, forces: ContactForces) -> tuple[Stretch, ...]:
+    """Stretches closed in the middle of the width, each end where the gap beyond it points to.
 
     Openings shorter than an element are not believed: a mesh whose borders are not on the edges shows such ripples.
     """
     stretches = []
+    problem = system.problem
+    gaps = problem.gap + problem.compliance @ forces.force + problem.motion @ forces.motion
     for pair, grid in system.grids.items():
         station = grid.station.ravel()
         length = np.repeat(grid.station[:, -1] - grid.station[:, 0], grid.station.shape[1])
-        closed = np.flatnonzero(force[system.points[pair]].reshape(grid.weight.shape)[:, :, grid.middle] > 0.0)
+        force, gap = (
+            values[system.points[pair]].reshape(grid.weight.shape)[:, :, grid.middle].ravel()
+            for values in (forces.force, gaps)
+        )
+        closed = np.flatnonzero(force > 0.0)
         opening = np.diff(station[closed]) >= length[closed[1:]]
         for run in np.split(closed, np.flatnonzero(opening) + 1) if len(closed) else []:
             before, after = max(run[0] - 1, 0), min(run[-1] + 1, len(station) - 1)
-            start, end = 0.5 * (station[run[0]] + station[before]), 0.5 * (station[run[-1]] + station[after])
-            slack = 0.5 * max(station[run[0]] - station[before], station[after] - station[run[-1]])
-            stretches.append(Stretch(pair, *_snapped(system.scene, pair, float(start), float(end)), float(slack)))
+            slack = max(station[run[0]] - station[before], station[after] - station[run[-1]])
+            start = _end(station[run[0] :: -1], gap[run[0] :: -1])
+            end = _end(station[run[-1] :], gap[run[-1] :])
+            stretches.append(Stretch(pair, *_snapped(system.scene, pair, start, end), float(slack)))
     return tuple(stretches)
+
+
+def _end(station: Array, gap: Array) -> float:
+    """Where contact ends between the first station, which is closed, and the next one.
+
+    Beyond a smooth edge the gap opens with the power 3/2 of the distance (Johnson, Contact Mechanics, 1985, section
+    5.1): the line through gap^(2/3) at the next two stations has its zero there. Half way where they do not open so.
+    """
+    # Elements share the station on their border.
+    distance = np.abs(station - station[0])
+    beyond = np.flatnonzero(np.diff(distance, prepend=0.0) > SAME_BORDER)
+    if len(beyond) == 0:
+        return float(station[0])
+    near, share = beyond[0], 0.5
+    if len(beyond) > 1 and 0.0 < gap[near] < gap[beyond[1]]:
+        opening = gap[beyond[:2]] ** (2.0 / 3.0)
+        zero = distance[near] - opening[0] * (distance[beyond[1]] - distance[near]) / (opening[1] - opening[0])
+        share = float(np.clip(zero / distance[near], *BETWEEN))
+    return float(station[0] + share * (station[near] - station[0]))
 
 
 def _snapped(scene: Scene, pair: str, start: float, end: float) -> tuple[float, float]:
