@@ -145,7 +145,7 @@ def moved_contact(
     """
     forces = unilateral_contact(system.problem, settled=False)
     stretches, solutions = stretches_in_contact(system, forces), 1
-    for _ in range(MOST_TOPOLOGIES):
+    for attempt in range(MOST_TOPOLOGIES):
         edges, positions = moving_edges(scene, stretches)
         search = _search(scene, natural, stretches, edges, positions, system_on) if edges else None
         system = system_on(natural) if search is None else search.system
@@ -159,7 +159,12 @@ def moved_contact(
                 return MovedContact(forces.outcome, solutions, settled, system, forces)
         stretches = found
         stagnated = search is not None and search.outcome == "stagnated"
-        if stagnated or forces.outcome != "converged" or not moving_edges(scene, found)[0]:
+        if stagnated and attempt == 0:
+            # A better guess may help: that of the natural borders at the level asked for.
+            system, solutions = system_on(natural), solutions + 1
+            forces = unilateral_contact(system.problem)
+            stretches, stagnated = stretches_in_contact(system, forces), False
+        if stagnated or forces.outcome != "converged" or not moving_edges(scene, stretches)[0]:
             break
     return MovedContact(forces.outcome, solutions, stretches, system, forces)
 
