@@ -17,9 +17,10 @@ from scipy.linalg import cho_factor, cho_solve
 from scipy.sparse import csc_array
 
 from cases.scene import ContactPair, Scene
-from reference3d.frames import face_frame, pair_overlap
+from reference3d.frames import face_frame, gaps, pair_overlap
 from reference3d.grading import Borders
 from reference3d.quadratic import line_nodes, locate, nodal_weights, shape_functions
+from reference3d.scope import penalty, second_face
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -36,6 +37,8 @@ class ContactNodes:
     ----------
     station, lateral : coordinates of the grid on the first face, mm, shapes (n_s,), (n_lateral,)
     area : tributary areas, mm^2, shape (n_s, n_lateral)
+    gap : initial distance of the faces, mm, shape (n_s n_lateral,)
+    penalty : N/mm^3
     first, second : rows of the normal displacement against n_c at the node and along n_c opposite it, so that
         d = g + first @ u_1 + second @ u_2, shape (n_s n_lateral, unknowns of the rod)
     """
@@ -43,6 +46,8 @@ class ContactNodes:
     station: Array
     lateral: Array
     area: Array
+    gap: Array
+    penalty: float
     first: csc_array
     second: csc_array
 
@@ -72,8 +77,8 @@ def contact_nodes(scene: Scene, pair: ContactPair, borders: dict[str, Borders], 
     symmetric : whether they are those of the halves x >= 0
     """
     overlap = pair_overlap(scene, pair)
-    first, second = (face_frame(scene.rod(side.rod), side.face) for side in (pair.first, pair.second))
-    own = borders[pair.first.rod]
+    first, second = (face_frame(scene.rod(side.rod), side.face) for side in (pair.first, second_face(pair)))
+    own, other = borders[pair.first.rod], borders[second_face(pair).rod]
     across = own.x if first.lateral_axis == 0 else own.y
     station, along_weight = _inside(own.s, *overlap.first[0])
     lateral, across_weight = _inside(across, max(overlap.first[1][0], across[0]), overlap.first[1][1])
@@ -85,8 +90,10 @@ def contact_nodes(scene: Scene, pair: ContactPair, borders: dict[str, Borders], 
         station=station,
         lateral=lateral,
         area=np.outer(along_weight, across_weight),
+        gap=np.repeat(gaps(scene, pair, station), len(lateral)),
+        penalty=penalty(scene, pair),
         first=_face_rows(own, first.normal_axis, first.side, -float(first.side), points),
-        second=_face_rows(borders[pair.second.rod], second.normal_axis, second.side, -float(second.side), opposite),
+        second=_face_rows(other, second.normal_axis, second.side, -float(second.side), opposite),
     )
 
 

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from cases.scene import ContactPair, Face, Rod, Scene, SceneError
-from reference3d.scope import forces, rectangle, straight_line
+from cases.scene import ContactPair, Face, GapTable, Rod, RoundGap, Scene, SceneError
+from reference3d.scope import forces, rectangle, second_face, straight_line
 
 Array = NDArray[np.float64]
 
@@ -113,12 +113,12 @@ def pair_overlap(scene: Scene, pair: ContactPair) -> Overlap:
     SceneError
         if the rods or the faces are not parallel.
     """
-    rod_1, rod_2 = scene.rod(pair.first.rod), scene.rod(pair.second.rod)
-    face_1, face_2 = face_frame(rod_1, pair.first.face), face_frame(rod_2, pair.second.face)
+    rod_1, rod_2 = scene.rod(pair.first.rod), scene.rod(second_face(pair).rod)
+    face_1, face_2 = face_frame(rod_1, pair.first.face), face_frame(rod_2, second_face(pair).face)
     key = f"contacts.{pair.name}"
     if np.linalg.norm(face_1.normal + face_2.normal) > ANGLE_TOLERANCE:
         angle = np.degrees(np.arccos(np.clip(face_1.normal @ face_2.normal, -1.0, 1.0)))
-        found = f"'{pair.second.face}', turned by {angle:.4g} degrees from the first face"
+        found = f"'{second_face(pair).face}', turned by {angle:.4g} degrees from the first face"
         remedy = "the 3D reference needs parallel faces that face each other (180 degrees)"
         raise SceneError(f"{key}.second.face", found, remedy)
     along = float(face_1.tangent @ face_2.tangent)
@@ -141,6 +141,24 @@ def pair_overlap(scene: Scene, pair: ContactPair) -> Overlap:
     )
 
 
+def gaps(scene: Scene, pair: ContactPair, station: Array) -> Array:
+    """Initial distance of the faces of a pair at arc lengths of the first rod, mm; shape (n,) to (n,)."""
+    match pair.gap:
+        case GapTable():
+            return np.interp(station, pair.gap.stations, pair.gap.gaps)
+        case RoundGap():
+            # the circle through the least gap, as far as a quarter of it
+            radius, away = pair.gap.radius, station - pair.gap.station
+            rise = np.sqrt(np.maximum(radius**2 - away**2, 0.0))
+            return np.asarray(pair.gap.least + radius - np.copysign(rise, radius))
+        case "drawn":
+            sides = [(scene.rod(side.rod), face_frame(scene.rod(side.rod), side.face)) for side in pair.faces]
+            first, second = (rod_frame(rod).origin + face.offset * face.normal for rod, face in sides)
+            return np.full(len(station), float((second - first) @ sides[0][1].normal))
+        case _:
+            return np.full(len(station), float(pair.gap))
+
+
 def is_symmetric(scene: Scene) -> bool:
     """Whether geometry, loads and supports are mirrored in the plane x = 0 of every rod."""
     for load in forces(scene):
@@ -149,7 +167,7 @@ def is_symmetric(scene: Scene) -> bool:
         if abs(across) > 1e-12 * np.linalg.norm(force):
             return False
     for pair in scene.contacts:
-        if not {pair.first.face, pair.second.face} <= {"top", "bottom"}:
+        if not {pair.first.face, second_face(pair).face} <= {"top", "bottom"}:
             return False
         overlap = pair_overlap(scene, pair)
         if abs(overlap.shift[1]) > 1e-9 * rectangle(scene.rod(pair.first.rod)).width:

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from cases.scene import LineLoad, Rod, Scene
 from reference3d.frames import pair_overlap
-from reference3d.scope import clamps, forces, rectangle
+from reference3d.scope import clamps, forces, rectangle, second_face
 
 Array = NDArray[np.float64]
 
@@ -84,13 +84,13 @@ def rod_borders(scene: Scene, rod: Rod, refinement: int, symmetric: bool) -> Bor
             add(load.position, LOAD_CELL * side)
     for pair in scene.contacts:
         for face, opposite in zip(
-            (pair.first, pair.second),
+            (pair.first, second_face(pair)),
             (pair_overlap(scene, pair).first, pair_overlap(scene, pair).second),
             strict=True,
         ):
             if face.rod != rod.name:
                 continue
-            sections = [rectangle(scene.rod(name)) for name in (pair.first.rod, pair.second.rod)]
+            sections = [rectangle(scene.rod(name)) for name in (pair.first.rod, second_face(pair).rod)]
             smaller = min(min(each.width, each.height) for each in sections)
             for place in opposite[0]:
                 add(place, ZONE_END_CELL * smaller)

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from cases.scene import (
     Clamp,
+    ContactPair,
     Gravity,
     Helix,
     Line,
@@ -16,6 +17,7 @@ from cases.scene import (
     Pressure,
     Rectangle,
     Rod,
+    RodFace,
     Scene,
     SceneError,
     SectionForce,
@@ -23,6 +25,10 @@ from cases.scene import (
 )
 
 INSTEAD = "in scenes with contact yet; use --model rod"
+
+# Default penalty in units of the softer rod's Young's modulus over the smallest side of a section: a rod is squeezed a
+# thousand times as much as it penetrates.
+STIFF = 1e3
 
 # What a load is called that is not a force, and what keeps it from being taken.
 _OTHER_LOADS: dict[type[Load], tuple[str, str]] = {
@@ -39,7 +45,7 @@ def require_treatable(scene: Scene) -> None:
     ------
     SceneError
         if a rod is curved, twisted, not isotropic or not of rectangular section, a support is not a clamp at rest,
-        a load is not a force, or there is a joint or a bed.
+        a load is not a force, a rod may touch ground, or there is a joint or a bed.
     """
     for rod in scene.rods:
         straight_line(rod)
@@ -47,11 +53,30 @@ def require_treatable(scene: Scene) -> None:
         isotropic(rod)
     clamps(scene)
     forces(scene)
+    for pair in scene.contacts:
+        second_face(pair)
     if scene.joints:
         remedy = f"the 3D reference does not join rods {INSTEAD}"
         raise SceneError("joints", f"{len(scene.joints)}", remedy)
     if scene.beds:
         raise SceneError("beds", f"{len(scene.beds)}", f"the 3D reference does not lay rods on beds {INSTEAD}")
+
+
+def second_face(pair: ContactPair) -> RodFace:
+    """The second face of a pair, seen to be one of a rod; SceneError if it is ground."""
+    if isinstance(pair.second, RodFace):
+        return pair.second
+    remedy = f"the 3D reference does not lay rods on ground {INSTEAD}"
+    raise SceneError(f"contacts.{pair.name}.second", "ground", remedy)
+
+
+def penalty(scene: Scene, pair: ContactPair) -> float:
+    """Penalty of a pair as given, or one so stiff that what it leaves does not count, N/mm^3."""
+    if pair.penalty is not None:
+        return pair.penalty
+    rods = [scene.rod(face.rod) for face in pair.faces]
+    modulus = min(isotropic(rod).young_modulus for rod in rods)
+    return STIFF * modulus / min(min(rectangle(rod).width, rectangle(rod).height) for rod in rods)
 
 
 def straight_line(rod: Rod) -> Line:

@@ -76,10 +76,12 @@ class RodResult:
 class PairResult:
     """What is kept of one contact pair, on the full grid of contact nodes.
 
+    penalty : N/mm^3
     station, lateral : mm, shapes (n_s,), (n_lateral,); area, gap, shape (n_s, n_lateral)
     """
 
     pair: ContactPair
+    penalty: float
     station: Array
     lateral: Array
     area: Array
@@ -88,7 +90,7 @@ class PairResult:
     @property
     def pressure(self) -> Array:
         """p_n, MPa, shape (n_s, n_lateral)."""
-        return np.asarray(self.pair.penalty * np.maximum(-self.gap, 0.0))
+        return np.asarray(self.penalty * np.maximum(-self.gap, 0.0))
 
 
 @dataclass(frozen=True)

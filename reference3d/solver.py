@@ -23,7 +23,7 @@ from reference3d.factor import solve as solve_layers
 from reference3d.field import Field, mirrored
 from reference3d.frames import is_symmetric, rod_frame
 from reference3d.quadratic import line_nodes
-from reference3d.scope import clamps, rectangle, require_treatable
+from reference3d.scope import clamps, rectangle, require_treatable, second_face
 from reference3d.solid_solution import SolidSolution
 from reference3d.solid_solver import solve_solid
 from reference3d.solution import Cost, PairResult, RodResult, Solution
@@ -131,7 +131,7 @@ def _candidates(pair: ContactPair, nodes: ContactNodes, located: Solution | None
         return np.ones(nodes.area.size, dtype=bool)
     coarse = located.pairs[pair.name]
     touched = coarse.station[(coarse.pressure > 0.0).any(axis=1)]
-    sections = [rectangle(located.scene.rod(side.rod)) for side in (pair.first, pair.second)]
+    sections = [rectangle(located.scene.rod(side.rod)) for side in (pair.first, second_face(pair))]
     margin = MARGIN * min(min(section.width, section.height) for section in sections)
     near = near_contact(nodes.station, touched, margin)
     return np.repeat(near, len(nodes.lateral))
@@ -141,7 +141,8 @@ def _sides(scene: Scene, nodes: list[ContactNodes], rod: Rod) -> list[csc_array 
     """For each pair, the rows of the normal displacement of this rod's face, if it is in the pair."""
     found: list[csc_array | None] = []
     for pair, grid in zip(scene.contacts, nodes, strict=True):
-        found.append(grid.first if pair.first.rod == rod.name else grid.second if pair.second.rod == rod.name else None)
+        is_second = second_face(pair).rod == rod.name
+        found.append(grid.first if pair.first.rod == rod.name else grid.second if is_second else None)
     return found
 
 
@@ -156,10 +157,10 @@ def _contact_forces(
     if total == 0:
         return forces, "converged", 0
     matrix, offset = np.zeros((total, total)), np.zeros(total)
-    for index, (pair, grid, chosen) in enumerate(zip(scene.contacts, nodes, candidates, strict=True)):
+    for index, (grid, chosen) in enumerate(zip(nodes, candidates, strict=True)):
         place = np.arange(starts[index], starts[index + 1])
-        matrix[place, place] += 1.0 / (pair.penalty * grid.area.ravel()[chosen])
-        offset[place] += pair.gap
+        matrix[place, place] += 1.0 / (grid.penalty * grid.area.ravel()[chosen])
+        offset[place] += grid.gap[chosen]
     for body in bodies.values():
         rows, places = [], []
         for index, side in enumerate(_sides(scene, nodes, body.rod)):
@@ -190,7 +191,7 @@ def _respond(
 ) -> tuple[dict[str, tuple[Array, Array]], list[Array]]:
     """Displacement and force of each body, shape (n_planes, m), and the gaps of each pair."""
     fields: dict[str, tuple[Array, Array]] = {}
-    gaps = [np.full(grid.area.size, float(pair.gap)) for pair, grid in zip(scene.contacts, nodes, strict=True)]
+    gaps = [grid.gap.copy() for grid in nodes]
     for name, body in bodies.items():
         force = body.load.copy()
         sides = _sides(scene, nodes, body.rod)
@@ -244,7 +245,7 @@ def _collect(
     pairs, mismatch, penetrating = {}, 0.0, 0.0
     for pair, grid, force, gap in zip(scene.contacts, nodes, forces, gaps, strict=True):
         pairs[pair.name] = _pair_result(pair, grid, force, gap, symmetric)
-        implied = -force / (pair.penalty * grid.area.ravel())
+        implied = -force / (grid.penalty * grid.area.ravel())
         mismatch = max(mismatch, float(np.abs(gap - implied)[force > 0.0].max(initial=0.0)))
         penetrating -= (2.0 if symmetric else 1.0) * 0.5 * float(force @ implied)
     if outcome == "converged" and residual > RESIDUAL_TOLERANCE:
@@ -289,7 +290,7 @@ def _pair_result(pair: ContactPair, nodes: ContactNodes, force: Array, gap: Arra
     # in contact the gap follows from the force, free of the cancellation in the difference of displacements
     shape = nodes.area.shape
     area = nodes.area
-    gap = np.where(force > 0.0, -force / (pair.penalty * area.ravel()), np.maximum(gap, 0.0)).reshape(shape)
+    gap = np.where(force > 0.0, -force / (nodes.penalty * area.ravel()), np.maximum(gap, 0.0)).reshape(shape)
     lateral = nodes.lateral
     if symmetric:
         half = area.copy()
@@ -297,4 +298,4 @@ def _pair_result(pair: ContactPair, nodes: ContactNodes, force: Array, gap: Arra
         area = np.concatenate([half[:, :0:-1], half], axis=1)
         gap = np.concatenate([gap[:, :0:-1], gap], axis=1)
         lateral = np.concatenate([-lateral[:0:-1], lateral])
-    return PairResult(pair, nodes.station, lateral, area, gap)
+    return PairResult(pair, nodes.penalty, nodes.station, lateral, area, gap)

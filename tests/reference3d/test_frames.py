@@ -1,10 +1,13 @@
 """Frames of rods, overlap of faces, symmetry of scenes."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
-from cases.scene import Line, SceneError
-from reference3d.frames import is_symmetric, pair_overlap, rod_frame
+from cases.scene import GapTable, Line, RoundGap, SceneError
+from reference3d.frames import gaps, is_symmetric, pair_overlap, rod_frame
+from reference3d.scope import penalty
 
 UP = (0.0, 1.0, 0.0)
 
@@ -80,3 +83,25 @@ def test_the_paper_case_is_symmetric(two_cantilevers):
 )
 def test_what_breaks_the_symmetry_is_seen(two_cantilevers, change):
     assert not is_symmetric(two_cantilevers(50000.0, 0.0, **change))
+
+
+def test_gaps_are_those_given_or_drawn(two_cantilevers):
+    scene = two_cantilevers(50000.0, 0.0)
+    station = np.array([200.0, 215.0, 250.0])
+
+    def found(gap):
+        return gaps(scene, replace(scene.contacts[0], gap=gap), station)
+
+    np.testing.assert_allclose(found(0.3), 0.3)
+    np.testing.assert_allclose(found(GapTable((210.0, 220.0), (0.1, 0.3))), [0.1, 0.2, 0.3])
+    # a circle of radius 500: (s - 200)^2 / 1000 to second order, next term 2500^2 / (8 * 500^3)
+    np.testing.assert_allclose(found(RoundGap(500.0, 200.0, 0.1)), [0.1, 0.325, 2.6], atol=0.01)
+    np.testing.assert_allclose(found(RoundGap(-500.0, 200.0, 0.1)), [0.1, -0.125, -2.4], atol=0.01)
+    np.testing.assert_allclose(found("drawn"), 0.0, atol=1e-12)  # bars 15 mm thick with axes 15 mm apart
+
+
+def test_a_pair_without_a_penalty_has_a_stiff_one(two_cantilevers):
+    scene = two_cantilevers(50000.0, 0.0)
+
+    assert penalty(scene, scene.contacts[0]) == 1e6
+    assert penalty(scene, replace(scene.contacts[0], penalty=None)) == pytest.approx(1e3 * 50000.0 / 15.0)

@@ -12,6 +12,7 @@ from cases.scene import (
     Circle,
     Clamp,
     Gravity,
+    Ground,
     Helix,
     Joint,
     Line,
@@ -108,6 +109,14 @@ def test_other_supports_than_clamps_at_rest_are_refused_where_there_is_contact(t
         solve(replace(scene, supports=(*scene.supports, support)))
 
     assert caught.value.key == key
+
+
+def test_ground_is_refused(two_cantilevers):
+    scene = two_cantilevers(50000.0, 0.0)
+    pair = replace(scene.contacts[0], second=Ground(), gap=1.0)
+
+    with pytest.raises(SceneError, match=r"contacts\.lower-upper\.second: found ground; .* use --model rod"):
+        solve(replace(scene, contacts=(pair,)))
 
 
 def test_joints_are_refused_where_there_is_contact(two_cantilevers):
