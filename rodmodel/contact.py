@@ -18,14 +18,16 @@ Array = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
 IntArray = NDArray[np.int64]
 
-# Steps of the multipliers, and the change of the forces, relative to their sum, at which they have settled.
-MOST_STEPS, SETTLED = 100, 1e-6
-# Weight of balance against the gaps where least squares look for the points that hold a loose rod.
-BALANCE_WEIGHT = 1e3
-# Forces and gaps this small against the largest have no certain sign.
-ROUND_OFF = 1e-10
-# Share of a load that contact must balance to hold a loose rod.
-BALANCED = 1e-8
+# Steps of the multipliers, and the energy left in the springs, as a share of the rods', at which they have settled.
+MOST_STEPS, SETTLED = 100, 1e-11
+# How often all points that are wrong about a set may change sides at once.
+MOST_EXCHANGES = 10
+# How far loose rods move on their springs, as a multiple of what they deform.
+SOFT = 1e3
+# Forces, gaps and unbalanced loads this small against the largest may be round-off.
+ROUND_OFF = 1e-9
+# Share of a load that contact may leave unbalanced on a loose rod: in the end, and where it only tells about where.
+BALANCED, ROUGHLY_BALANCED = 1e-10, 1e-3
 
 
 @dataclass(frozen=True, eq=False)
@@ -116,51 +118,143 @@ class ActiveSet:
         for _ in range(MOST_STEPS):
             force, motion = self.forces(multiplier)
             before, multiplier = multiplier, np.where(self._problem.rigid, force, 0.0)
-            if _are_settled(multiplier, before):
+            if _are_settled(self._problem, multiplier, before):
                 break
         return force, motion
 
 
-def _are_settled(multiplier: Array, before: Array) -> bool:
-    return bool(np.abs(multiplier - before).sum() <= SETTLED * np.abs(multiplier).sum())
+def _are_settled(problem: ContactProblem, multiplier: Array, before: Array) -> bool:
+    """Whether the springs hold next to nothing of what the rods do."""
+    left = float(np.sum((multiplier - before) ** 2 / problem.spring))
+    return left <= SETTLED * (float(multiplier @ problem.compliance @ multiplier) + left)
 
 
 def unilateral_contact(problem: ContactProblem, settled: bool = True) -> ContactForces:
     """Contact forces that only push: f >= 0, d >= 0 (d + f / (c_n w) >= 0 at springs), and one of the two zero.
 
-    Each step of the multipliers is the minimum of a convex quadratic over f >= 0, solved by Lawson and Hanson's
-    non-negative least squares, which end after finitely many sets. (A primal-dual active set cycles on these problems:
-    more points than an element has freedoms make sets that differ by nothing but round-off.) Where the set of the step
-    before still serves, no other is looked for.
+    Loose rods hang on soft springs, whose forces multipliers take away as they do the penetration. Each step of the
+    multipliers is then the minimum of a strictly convex quadratic over f >= 0.
 
-    settled : go on until the multipliers have taken the penetration away; the first step alone tells about where
+    settled : go on until the multipliers have done their work; before, the forces tell about where contact is
     """
     force, motion = np.zeros_like(problem.gap), np.zeros_like(problem.motion_load)
     if not _can_balance(problem):
         return ContactForces(force, motion, "refused: contact does not hold what nothing else holds", 0)
-    multiplier, tried = force, 1
-    chosen = ActiveSet(_pushing(problem, multiplier), problem)
-    for _ in range(MOST_STEPS if settled else 1):
-        force, motion, wrong = _answer(chosen, problem, multiplier)
-        if len(wrong):
-            chosen, tried = ActiveSet(_pushing(problem, multiplier), problem), tried + 1
-            force, motion, wrong = _answer(chosen, problem, multiplier)
-        # Least squares lose digits to the factor's condition, and weigh balance instead of asking for it: one point
-        # after another changes sides until all serve.
-        for _ in range(3 * len(force)):
+    flexibility = _soft_springs(problem)
+    matrix = problem.compliance + problem.motion @ flexibility @ problem.motion.T
+    matrix[np.diag_indices_from(matrix)] += 1.0 / problem.spring
+    pushing = PushingForces(matrix)
+    size, multiplier = np.abs(problem.motion_load).max(initial=0.0), force
+    for _ in range(MOST_STEPS):
+        hung = problem.gap + problem.motion @ (motion + flexibility @ problem.motion_load)
+        found = pushing.closing(hung - multiplier / problem.spring)
+        if found is None:
+            return ContactForces(force, motion, "stagnated: no set of contact points serves", pushing.active_sets)
+        force = found
+        unbalanced = problem.motion.T @ force + problem.motion_load
+        motion = motion + flexibility @ unbalanced
+        before, multiplier = multiplier, np.where(problem.rigid, force, 0.0)
+        balance = float(np.abs(unbalanced).max(initial=0.0))
+        if settled and _are_settled(problem, multiplier, before) and balance <= BALANCED * size:
+            break
+        if not settled and balance <= ROUGHLY_BALANCED * size:
+            break
+    return ContactForces(force, motion, "converged", pushing.active_sets)
+
+
+def _soft_springs(problem: ContactProblem) -> Array:
+    """Flexibility of the springs that loose rods hang on, shape (n_motions, n_motions).
+
+    They move the contact points `SOFT` times as far as the rods' own compliance does, on average.
+    """
+    count = len(problem.motion_load)
+    if count == 0 or not len(problem.gap):
+        return np.zeros((count, count))
+    own = float(np.mean(np.diagonal(problem.compliance) + 1.0 / problem.spring))
+    # Motions that open no gap have no say.
+    return np.asarray(SOFT * own * len(problem.gap) * np.linalg.pinv(problem.motion.T @ problem.motion, hermitian=True))
+
+
+class PushingForces:
+    """Minimises 1/2 f^T A f + gap^T f over f >= 0 for one gap after another: f >= 0, gap + A f >= 0, one of them zero.
+
+    From the set of the gap before all points that are wrong about it change sides at once (primal-dual active set), as
+    long as that leaves fewer and fewer of them. It may cycle: more points than an element has freedoms make sets that
+    differ by nothing but round-off. Then Lawson and Hanson's non-negative least squares find the set, which end after
+    finitely many.
+
+    Attributes
+    ----------
+    active_sets : tried so far
+    """
+
+    def __init__(self, matrix: Array) -> None:
+        self.active_sets = 0
+        self._matrix = matrix
+        self._factor: Array | None = None
+        self._active = np.zeros(len(matrix), dtype=bool)
+        self._active_factor: tuple[Array, bool] | None = None
+
+    def closing(self, gap: Array) -> Array | None:
+        """The forces for a gap, shape (n,); None where no set of points serves."""
+        force, wrong = self._forces(gap)
+        for _ in range(MOST_EXCHANGES if self.active_sets else 0):
             if not len(wrong):
                 break
-            active = chosen.active.copy()
-            active[wrong[0]] = ~active[wrong[0]]
-            chosen, tried = ActiveSet(active, problem), tried + 1
-            force, motion, wrong = _answer(chosen, problem, multiplier)
-        if len(wrong):
-            return ContactForces(np.maximum(force, 0.0), motion, "stagnated: no set of contact points serves", tried)
-        force = np.maximum(force, 0.0)
-        before, multiplier = multiplier, np.where(problem.rigid, force, 0.0)
-        if _are_settled(multiplier, before):
-            break
-    return ContactForces(force, motion, "converged", tried)
+            before = len(wrong)
+            self._exchange(wrong)
+            force, wrong = self._forces(gap)
+            if len(wrong) >= before:
+                break
+        if self.active_sets == 0 or len(wrong):
+            self._choose(self._least_squares(gap) > 0.0)
+            force, wrong = self._forces(gap)
+        # Least squares lose digits to the factor's condition: one point after another changes sides until all serve.
+        for _ in range(3 * len(gap)):
+            if not len(wrong):
+                break
+            self._exchange(wrong[:1])
+            force, wrong = self._forces(gap)
+        return None if len(wrong) else np.maximum(force, 0.0)
+
+    def _exchange(self, points: IntArray) -> None:
+        active = self._active.copy()
+        active[points] = ~active[points]
+        self._choose(active)
+
+    def _choose(self, active: BoolArray) -> None:
+        self.active_sets += 1
+        self._active = active
+        chosen = self._matrix[np.ix_(active, active)]
+        self._active_factor = cho_factor(chosen, lower=True, check_finite=False) if len(chosen) else None
+
+    def _forces(self, gap: Array) -> tuple[Array, IntArray]:
+        """Forces on the chosen set, and the points that are wrong about it, the worst first.
+
+        Those that pull, and those that are not joined and penetrate.
+        """
+        force = np.zeros_like(gap)
+        if self._active_factor is not None:
+            force[self._active] = -cho_solve(self._active_factor, gap[self._active], check_finite=False)
+        opening = gap + self._matrix @ force
+        pulling = -force / (np.abs(force).max(initial=0.0) or 1.0)
+        closing = -opening / (np.abs(gap).max(initial=0.0) or 1.0)
+        wrong = np.where(self._active, pulling, closing)
+        number = np.flatnonzero(wrong > ROUND_OFF)
+        return force, number[np.argsort(-wrong[number], kind="stable")]
+
+    def _least_squares(self, gap: Array) -> Array:
+        if not len(gap):
+            return gap
+        # Importing it takes longer than importing all of this package, and only scenes with contact need it.
+        from scipy.optimize import nnls
+
+        if self._factor is None:
+            self._factor = cholesky(self._matrix, lower=True, check_finite=False)
+        try:
+            return np.asarray(nnls(self._factor.T, -solve_triangular(self._factor, gap, lower=True))[0])
+        except RuntimeError:  # out of iterations: begin with what the given gap closes
+            return np.maximum(-gap, 0.0)
 
 
 def _can_balance(problem: ContactProblem) -> bool:
@@ -173,41 +267,4 @@ def _can_balance(problem: ContactProblem) -> bool:
     from scipy.optimize import nnls
 
     _, missing = nnls(problem.motion.T, -problem.motion_load)
-    return bool(missing <= BALANCED * size)
-
-
-def _answer(chosen: ActiveSet, problem: ContactProblem, multiplier: Array) -> tuple[Array, Array, IntArray]:
-    """Forces and motions on a set, and the points wrong about it, the worst first.
-
-    Those that pull, and those that are not joined and closer than their multiplier allows.
-    """
-    force, motion = chosen.forces(multiplier)
-    opening = problem.gap + problem.compliance @ force + problem.motion @ motion - multiplier / problem.spring
-    size = np.abs(problem.gap).max(initial=0.0) + np.abs(opening).max(initial=0.0)
-    pulling = -force / (np.abs(force).max(initial=0.0) or 1.0)
-    closing = -opening / (size or 1.0)
-    wrong = np.where(chosen.active, pulling, closing)
-    number = np.flatnonzero(wrong > ROUND_OFF)
-    return force, motion, number[np.argsort(-wrong[number], kind="stable")]
-
-
-def _pushing(problem: ContactProblem, multiplier: Array) -> BoolArray:
-    """Points that push in the minimum over f >= 0, up to round-off."""
-    gap = problem.gap - multiplier / problem.spring
-    if not len(gap):
-        return np.empty(0, dtype=bool)
-    # Importing it takes longer than importing all of this package, and only scenes with contact need it.
-    from scipy.optimize import nnls
-
-    matrix = problem.compliance.copy()
-    matrix[np.diag_indices_from(matrix)] += 1.0 / problem.spring
-    factor = cholesky(matrix, lower=True, check_finite=False)
-    rows, right = factor.T, -solve_triangular(factor, gap, lower=True, check_finite=False)
-    if len(problem.motion_load):
-        scale = np.linalg.norm(problem.motion, axis=0) / (BALANCE_WEIGHT * np.linalg.norm(factor))
-        rows = np.vstack([rows, (problem.motion / scale).T])
-        right = np.concatenate([right, -problem.motion_load / scale])
-    try:
-        return np.asarray(nnls(rows, right)[0] > 0.0)
-    except RuntimeError:  # out of iterations: begin with what the given gaps close
-        return np.asarray(gap < 0.0)
+    return bool(missing <= ROUND_OFF * size)
