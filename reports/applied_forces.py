@@ -74,7 +74,7 @@ def applied_forces(solution: Solution, rod: Rod, station: Array, reactions: Reac
     smooth = np.union1d(station, changes_of_turning(solution, rod))
     found = [_load(solution, load, rod, smooth) for load in scene.loads if load.rod == rod.name]
     for pair in scene.contacts:
-        for face, sign in ((pair.first, -1.0), (pair.second, 1.0)):
+        for face, sign in zip(pair.faces, (-1.0, 1.0), strict=False):
             if face.rod == rod.name:
                 contact = solution.contact_points(pair.name)
                 force = sign * contact.normal * contact.force

@@ -45,17 +45,21 @@ def equilibrium_resultants(solution: Solution, rod: Rod, applied: AppliedForces,
     return np.vstack([local_force[2], local_force[0], local_force[1], local_moment])
 
 
-def equilibrium_residual(scene: Scene, applied: Mapping[str, AppliedForces], reactions: Reactions) -> float:
+def equilibrium_residual(
+    scene: Scene, applied: Mapping[str, AppliedForces], reactions: Reactions, contact: float = 0.0
+) -> float:
     """Largest unbalanced force on any rod or joint, relative to the loads or, where they are larger, the reactions.
 
     Moments count about a rod's start or the joint, over the length of the rod (of a joint: the longest of its rods).
     The measure is the sum of the magnitudes of the loads (distributed ones in all), or the largest reaction of a
-    support or joint where that is larger: supports that are moved, or rods that are pressed together, need no load.
+    support or joint or force of a contact pair where that is larger: supports that are moved, or rods that are pressed
+    together, need no load, and rods held by contact alone no support.
 
     Parameters
     ----------
     applied : of each rod, by name
     reactions : of `reports.applied_forces.reactions`
+    contact : largest force of a contact pair, N
     """
     worst = 0.0
     for rod in scene.rods:
@@ -68,7 +72,7 @@ def equilibrium_residual(scene: Scene, applied: Mapping[str, AppliedForces], rea
     largest = max(
         (_as_force(found[:3], found[3:], scene.rod(name).length) for (name, _), found in reactions.items()), default=0.0
     )
-    measure = max(loads, largest)
+    measure = max(loads, largest, contact)
     return worst / measure if measure > 0.0 else worst
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from cases.case import QUANTITIES, Grades, Quantity
+from cases.scene import Gap, GapTable, Ground, RodFace, RoundGap
 from reports.comparison import Comparison, Kind
 from reports.quantities import DEFINITIONS
 from reports.solution import Model
@@ -74,6 +75,28 @@ def title(comparison: Comparison) -> str:
     if comparison.point is None:
         return name
     return f"{name} at ({', '.join(f'{coordinate:g}' for coordinate in comparison.point)})"
+
+
+def opposite(second: RodFace | Ground) -> str:
+    """What a face may touch: a face of another rod, or ground."""
+    if isinstance(second, RodFace):
+        return f"{second.face} face of {second.rod}"
+    return "rigid ground" if second.modulus is None else f"a bed of {second.modulus:g} N/mm³ that cannot pull"
+
+
+def gap(given: Gap) -> str:
+    """The gap of a contact pair in words."""
+    match given:
+        case GapTable():
+            return f"{min(given.gaps):g} to {max(given.gaps):g} mm by a table"
+        case RoundGap():
+            extreme = "least" if given.radius > 0.0 else "largest"
+            where = f"{extreme} ({given.least:g} mm) at {given.station:g} mm"
+            return f"round with a radius of {abs(given.radius):g} mm, {where}"
+        case "drawn":
+            return "as drawn"
+        case _:
+            return f"{given:g} mm"
 
 
 def seconds(value: float) -> str:

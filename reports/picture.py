@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 import pyvista
 
-from cases.scene import Clamp, Polygon, Rod, Scene
+from cases.scene import Clamp, ContactPair, Polygon, Rod, RodFace, Scene, given_gap
 from reports.geometry import face_extent
 from reports.quantities import Quantities, RodQuantities
 from reports.sections import outline
@@ -82,24 +82,42 @@ def deformed_surface(rod: Rod, quantities: RodQuantities, factor: float, shift: 
 def drawn_shifts(scene: Scene, quantities: Quantities, factor: float) -> dict[str, Array]:
     """How far each rod is moved so that gaps are magnified like displacements, mm.
 
-    The second rod of a pair is moved along the first face's normal from the drawn to the magnified given gap, with the
-    rods that it is joined to; the gap between rods that are joined to each other stays as drawn.
+    The second rod of a pair is moved along the first face's normal from the drawn to the magnified given gap where that
+    is least, with the rods that it is joined to or that already lie at a gap from it; the gap between rods that are
+    joined to each other stays as drawn.
     """
     shifts = {rod.name: np.zeros(3) for rod in scene.rods}
     groups = _joined(scene)
     for pair in scene.contacts:
-        first, second = scene.rod(pair.first.rod), scene.rod(pair.second.rod)
-        if groups[first.name] == groups[second.name]:
+        if not isinstance(pair.second, RodFace) or groups[pair.first.rod] == groups[pair.second.rod]:
             continue
-        normal = face_normals(quantities.rod(first.name), pair.first.face, np.zeros(1))[:, 0]
-        half, other_half = (face_extent(scene.rod(face.rod), face.face)[0] for face in (pair.first, pair.second))
-        apart = np.subtract(second.centre_line.end_points[0], first.centre_line.end_points[0])
-        drawn = float(normal @ apart) - half - other_half
-        move = shifts[first.name] + (factor * pair.gap - drawn) * normal - shifts[second.name]
+        normal, drawn, gap = _least_gap(scene, quantities, pair, pair.second)
+        move = shifts[pair.first.rod] + (factor * gap - drawn) * normal - shifts[pair.second.rod]
+        kept, moved = groups[pair.first.rod], groups[pair.second.rod]
         for name in shifts:
-            if groups[name] == groups[second.name]:
-                shifts[name] = shifts[name] + move
+            if groups[name] == moved:
+                shifts[name], groups[name] = shifts[name] + move, kept
     return shifts
+
+
+def _least_gap(
+    scene: Scene, quantities: Quantities, pair: ContactPair, opposite: RodFace
+) -> tuple[Array, float, float]:
+    """Normal of the first face, distance as drawn and given gap where that is least in the zone, mm.
+
+    The distance is that to the point of the other centre line that is seen nearest along the normal.
+    """
+    found, other = quantities.rod(pair.first.rod), quantities.rod(opposite.rod)
+    station = np.linspace(*pair.zone, 101)
+    normal = face_normals(found, pair.first.face, station)
+    apart = other.position[:, None, :] - between(found, found.position, station)[:, :, None]
+    along = np.einsum("in,inm->nm", normal, apart)
+    nearest = np.argmin(np.einsum("inm,inm->nm", apart, apart) - along**2, axis=1)
+    half, other_half = (face_extent(scene.rod(face.rod), face.face)[0] for face in pair.faces)
+    drawn = along[np.arange(len(station)), nearest] - half - other_half
+    gap = drawn if pair.gap == "drawn" else given_gap(pair.gap, station)
+    least = int(np.argmin(gap))
+    return normal[:, least], float(drawn[least]), float(gap[least])
 
 
 def _joined(scene: Scene) -> dict[str, int]:
@@ -148,6 +166,7 @@ def draw(scene: Scene, quantities: Quantities) -> Picture:
     _add_supports(plotter, scene, quantities, factor, shifts)
     _add_joints(plotter, scene, quantities, factor, shifts)
     _add_beds(plotter, scene, quantities, factor, shifts)
+    _add_ground(plotter, scene, quantities, factor, shifts)
     _add_loads(plotter, scene, quantities, factor, shifts)
     right, up = view_plane(scene, quantities)
     size = extent(quantities)
@@ -280,14 +299,51 @@ def _add_beds(
         face = still + factor * between(found, found.displacement, station)
         depth = side + float(np.maximum(0.0, np.einsum("in,in->n", face - still, normal)).max())
         ground = still + depth * normal
-        tangent = between(found, found.axes[:, 2].T, station)
-        share = np.concatenate([[0.0], np.linspace(0.2, 0.8, 7), [1.0]])
-        swing = 0.15 * side * np.array([0.0, 0.0, 1.0, -1.0, 1.0, -1.0, 1.0, 0.0, 0.0])
-        for place in range(SPRINGS):
-            along = np.outer(1.0 - share, face[:, place]) + np.outer(share, ground[:, place])
-            spring = pyvista.lines_from_points(along + np.outer(swing, tangent[:, place]))
-            plotter.add_mesh(spring, color=INK, line_width=2)
+        _add_springs(plotter, face, ground, between(found, found.axes[:, 2].T, station), 0.15 * side)
         plotter.add_mesh(pyvista.lines_from_points(ground.T), color=HOLD, line_width=8)
+
+
+def _add_springs(plotter: pyvista.Plotter, tops: Array, feet: Array, sideways: Array, swing: float) -> None:
+    """Springs between points, swinging along given directions; shape (3, n) each."""
+    share = np.concatenate([[0.0], np.linspace(0.2, 0.8, 7), [1.0]])
+    swings = swing * np.array([0.0, 0.0, 1.0, -1.0, 1.0, -1.0, 1.0, 0.0, 0.0])
+    for top, foot, direction in zip(tops.T, feet.T, sideways.T, strict=True):
+        along = np.outer(1.0 - share, top) + np.outer(share, foot)
+        plotter.add_mesh(pyvista.lines_from_points(along + np.outer(swings, direction)), color=INK, line_width=2)
+
+
+def _add_ground(
+    plotter: pyvista.Plotter, scene: Scene, quantities: Quantities, factor: float, shifts: dict[str, Array]
+) -> None:
+    """A strip at the magnified gap from the undeformed face; under it, for a bed, springs where it is not lifted off.
+
+    What is farther than three section heights is drawn there.
+    """
+    for pair in scene.contacts:
+        if isinstance(pair.second, RodFace) or pair.gap == "drawn":
+            continue
+        rod, found = scene.rod(pair.first.rod), quantities.rod(pair.first.rod)
+        side = float(np.ptp(outline(rod.section), axis=0).max())
+        station = np.linspace(*pair.zone, 4 * SPRINGS - 3)
+        normal = face_normals(found, pair.first.face, station)
+        still = between(found, found.position, station) + face_extent(rod, pair.first.face)[0] * normal
+        still = still + shifts[rod.name][:, None]
+        height = np.minimum(factor * given_gap(pair.gap, station), 3.0 * side)
+        tangent = between(found, found.axes[:, 2].T, station)
+        if pair.second.modulus is not None:
+            pressed = factor * np.einsum("in,in->n", between(found, found.displacement, station), normal)
+            top = np.maximum(height, pressed)
+            feet, some = still + (top.max() + side) * normal, slice(None, None, 4)
+            _add_springs(plotter, (still + top * normal)[:, some], feet[:, some], tangent[:, some], 0.15 * side)
+            plotter.add_mesh(pyvista.lines_from_points(feet.T), color=HOLD, line_width=8)
+            continue
+        across = side * np.cross(tangent, normal, axis=0)
+        ground = still + height * normal
+        points = np.hstack([ground - across, ground + across]).T
+        count = len(station)
+        first = np.arange(count - 1)
+        quads = np.stack([np.full(count - 1, 4), first, first + 1, count + first + 1, count + first], axis=1)
+        plotter.add_mesh(pyvista.PolyData(points, quads.ravel()), color=HOLD, ambient=0.4, diffuse=0.6)
 
 
 def _add_loads(

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from cases.scene import CentreLine, Clamp, ContactPair, Helix, Line, Path, Rod, Spline, Vector
+from cases.scene import CentreLine, Clamp, ContactPair, Ground, Helix, Line, Path, Rod, Spline, Vector
 from reports.applied_forces import AppliedForces, applied_forces, reactions
 from reports.contact_edges import contact_stretches, edge_resolution
 from reports.equilibrium import equilibrium_residual, equilibrium_resultants
@@ -38,29 +38,46 @@ DEFINITIONS: Mapping[str, Definition] = {
     "contact_force": Definition(
         "Contact force",
         "N",
-        "Magnitude of the resultant of the contact pressure on the second rod of the pair.",
+        "Magnitude of the resultant of the contact pressure on the second rod of the pair, or on ground.",
     ),
     "contact_centre": Definition(
         "Centre of contact",
         "mm",
         "Mean position of the contact force, weighted with the force, along the global axis to which the "
-        "first rod is most nearly parallel.",
+        "first rod is most nearly parallel in the middle of the zone.",
     ),
     "contact_edges": Definition(
         "Contact edges, middle",
         "mm",
         "Start and end of each stretch in contact in the middle of the width, along the global axis to "
-        "which the first rod is most nearly parallel. Near an edge the pressure goes like the square root "
-        "of the distance, so the edge is the zero of the straight line through the squared pressure of the "
-        "last two stations in contact, at most the next open station; where contact runs to the end of the "
-        "zone or of a rod, it is that end.",
+        "which the first rod is most nearly parallel in the middle of the zone. Near an edge the pressure goes "
+        "like the square root of the distance, so the edge is the zero of the straight line through the squared "
+        "pressure of the last two stations in contact, at most the next open station; where contact runs to the "
+        "end of the zone or of a rod, it is that end.",
     ),
     "contact_edges_outer": Definition(
         "Contact edges, outer",
         "mm",
         "Start and end of each stretch in contact at the outer border of the width, found as in the middle.",
     ),
-    "penetration": Definition("Penetration", "mm", "Largest overlap of the faces at any contact point."),
+    "penetration": Definition(
+        "Penetration",
+        "mm",
+        "Largest overlap of the faces at any contact point; on a bed, how far it is pressed in.",
+    ),
+    "complementarity_residual": Definition(
+        "Complementarity residual",
+        "",
+        "Largest product of force and distance of the faces at any contact point, relative to the sum of the "
+        "pair's contact forces times the largest displacement of a centre line: zero where forces act only between "
+        "faces that touch without overlap. On a bed only distances above zero count, as there overlap is meant.",
+    ),
+    "contact_work": Definition(
+        "Work of contact",
+        "N mm",
+        "Energy that contact keeps: half the sum of force times overlap over all contact points. Frictionless faces "
+        "that do not overlap keep none; a bed keeps what its springs hold.",
+    ),
     "pressure_middle": Definition("Pressure, middle", "MPa", "Contact pressure in the middle of the width."),
     "pressure_mean": Definition("Pressure, mean", "MPa", "Contact pressure averaged over the width."),
     "pressure_outer": Definition("Pressure, outer", "MPa", "Contact pressure at the outer border of the width."),
@@ -105,7 +122,7 @@ DEFINITIONS: Mapping[str, Definition] = {
         "Largest unbalanced force, or moment about a rod's start over its length, of the loads, contact and bed "
         "forces and reactions on any rod, and of the reactions at any joint; relative to the sum of the loads' "
         "magnitudes (distributed ones in all, moments over the rod's length), or to the largest reaction where that "
-        "is larger, as where supports are moved without any load.",
+        "or the force of a contact pair is larger, as where supports are moved without any load.",
     ),
     "stress_residual": Definition(
         "Moment residual",
@@ -139,12 +156,14 @@ class ContactQuantities:
     Attributes
     ----------
     axis : index of the global axis along which centre, edges and profile are given
-    resultant : contact force on the second rod, global components, N, shape (3,)
+    resultant : contact force on the second rod or ground, global components, N, shape (3,)
     force : its magnitude, N
     centre : where it acts along the axis, mm; None without contact
     edges, edges_outer : (start, end) of each stretch in contact, ascending, mm
     edges_resolution, edges_outer_resolution : widest interval of stations that holds one of the edges, mm
     penetration : largest overlap, mm
+    complementarity_residual : see `DEFINITIONS`
+    work : energy that contact keeps, N mm
     """
 
     pair: str
@@ -157,6 +176,8 @@ class ContactQuantities:
     edges_resolution: float
     edges_outer_resolution: float
     penetration: float
+    complementarity_residual: float
+    work: float
     pressure: PressureProfile
 
 
@@ -261,16 +282,20 @@ def evaluate(
     at = {rod.name: merged_stations(rod, extra.get(rod.name, np.empty(0))) for rod in scene.rods}
     held = reactions(solution)
     applied = {rod.name: applied_forces(solution, rod, at[rod.name], held) for rod in scene.rods}
+    rods = tuple(rod_quantities(solution, rod, applied[rod.name], at[rod.name]) for rod in scene.rods)
+    moved = max(float(np.linalg.norm(rod.displacement, axis=0).max()) for rod in rods)
+    contacts = tuple(contact_quantities(solution, pair, moved) for pair in scene.contacts)
+    pressing = max((contact.force for contact in contacts), default=0.0)
     quantities = Quantities(
         outcome=solution.outcome,
-        contacts=tuple(contact_quantities(solution, pair) for pair in scene.contacts),
-        rods=tuple(rod_quantities(solution, rod, applied[rod.name], at[rod.name]) for rod in scene.rods),
+        contacts=contacts,
+        rods=rods,
         point_stresses={
             (rod, point): float(stress_s(solution, rod, np.array([point]).T)[0]) for rod, point in stress_points
         },
         reactions=held,
         strain_energy=float(solution.strain_energy),
-        equilibrium_residual=equilibrium_residual(scene, applied, held),
+        equilibrium_residual=equilibrium_residual(scene, applied, held, pressing),
         unknowns=solution.cost.unknowns,
         contact_solutions=solution.contact_solutions,
         setup_seconds=solution.cost.setup_seconds,
@@ -288,6 +313,7 @@ def _require_finite(quantities: Quantities) -> None:
     for contact in quantities.contacts:
         pressure = contact.pressure
         numbers += [contact.resultant, pressure.middle, pressure.mean, pressure.outer]
+        numbers += [np.array([contact.complementarity_residual, contact.work])]
     if not all(np.isfinite(array).all() for array in numbers):
         raise SolutionError(f"the solution holds numbers that are not finite ({quantities.outcome})")
 
@@ -320,13 +346,18 @@ def _steps(line: CentreLine) -> int:
             return 0
 
 
-def contact_quantities(solution: Solution, pair: ContactPair) -> ContactQuantities:
-    """Resultant, centre, edges, penetration and pressure of one pair."""
+def contact_quantities(solution: Solution, pair: ContactPair, moved: float) -> ContactQuantities:
+    """Resultant, centre, edges, residuals and pressure of one pair.
+
+    moved : largest displacement of a centre line, mm
+    """
     axis = pair_axis(solution, pair)
     points = solution.contact_points(pair.name)
     resultant = np.asarray(points.normal @ points.force)
     total = float(points.force.sum())
     profile = solution.contact_profile(pair.name)
+    bed = isinstance(pair.second, Ground) and pair.second.modulus is not None
+    apart = points.force * (np.maximum(points.gap, 0.0) if bed else np.abs(points.gap))
     edges, resolution = _edges(solution, pair, profile, profile.middle)
     edges_outer, outer_resolution = _edges(solution, pair, profile, profile.outer)
     return ContactQuantities(
@@ -340,6 +371,8 @@ def contact_quantities(solution: Solution, pair: ContactPair) -> ContactQuantiti
         edges_resolution=resolution,
         edges_outer_resolution=outer_resolution,
         penetration=float(max(0.0, -points.gap.min(initial=0.0))),
+        complementarity_residual=float(apart.max(initial=0.0)) / (total * moved) if total * moved > 0.0 else 0.0,
+        work=-0.5 * float(points.force @ points.gap),
         pressure=PressureProfile(profile.position[axis], profile.middle, profile.mean, profile.outer),
     )
 
@@ -348,7 +381,7 @@ def _edges(
     solution: Solution, pair: ContactPair, profile: ContactProfile, pressure: Array
 ) -> tuple[tuple[tuple[float, float], ...], float]:
     """Stretches in contact, in the global coordinate of the pair's axis, and their edges' resolution, mm."""
-    axis, limits = pair_axis(solution, pair), contact_limits(solution, pair)
+    axis, limits = pair_axis(solution, pair), contact_limits(pair, profile.station)
     stretches = contact_stretches(profile.station, pressure, limits)
     ends = [solution.frame(pair.first.rod, np.array(stretch))[0][axis] for stretch in stretches]
     along = tuple(sorted((float(min(pair_ends)), float(max(pair_ends))) for pair_ends in ends))

@@ -39,7 +39,8 @@ class Pressure(_Object):
     """Contact pressure along the zone, at the solver's own stations."""
 
     position: list[float] = Field(
-        description="Coordinate along the global axis to which the first rod is most nearly parallel, mm."
+        description="Coordinate along the global axis to which the first rod is most nearly parallel in the middle of "
+        "the zone, mm."
     )
     middle: list[float] = Field(description=_described("pressure_middle"))
     mean: list[float] = Field(description=_described("pressure_mean"))
@@ -51,11 +52,13 @@ class Contact(_Object):
 
     pair: str = Field(description="Name of the contact pair in the case file.")
     force: float = Field(description=_described("contact_force"))
-    resultant: Triple = Field(description="The contact force on the second rod, global components, N.")
+    resultant: Triple = Field(description="The contact force on the second rod or ground, global components, N.")
     centre: float | None = Field(description=_described("contact_centre") + " Null without contact.")
     edges: list[Stretch] = Field(description=_described("contact_edges"))
     edges_outer: list[Stretch] = Field(description=_described("contact_edges_outer"))
     penetration: float = Field(description=_described("penetration"))
+    complementarity_residual: float = Field(description=_described("complementarity_residual"))
+    work: float = Field(description=_described("contact_work"))
     pressure: Pressure
 
 
@@ -148,6 +151,8 @@ def _contact(contact: ContactQuantities) -> Contact:
         edges=[list(stretch) for stretch in contact.edges],
         edges_outer=[list(stretch) for stretch in contact.edges_outer],
         penetration=contact.penetration,
+        complementarity_residual=contact.complementarity_residual,
+        work=contact.work,
         pressure=Pressure(
             position=pressure.position.tolist(),
             middle=pressure.middle.tolist(),

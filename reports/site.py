@@ -14,9 +14,21 @@ from typing import Any
 import numpy as np
 import plotly.graph_objects as go
 
+from cases.scene import ContactPair
 from reports.comparison import Comparison
 from reports.figures import deflection_figure, moment_figure, pressure_figure
-from reports.formatting import MODEL_NAMES, grades, measure, number, seconds, stretches, title, values_with_unit
+from reports.formatting import (
+    MODEL_NAMES,
+    gap,
+    grades,
+    measure,
+    number,
+    opposite,
+    seconds,
+    stretches,
+    title,
+    values_with_unit,
+)
 from reports.html import rendered
 from reports.processes import ProcessFailed, Progress, in_own_process
 from reports.quantities import DEFINITIONS
@@ -202,12 +214,12 @@ def _case(run: CaseRun, anchor: str, picture: DrawnPicture) -> tuple[dict[str, A
     return content, figures
 
 
-def _sketch_caption(contacts: Sequence[Any]) -> str:
-    pairs = [
-        f"{pair.name}: {pair.first.face} face of {pair.first.rod} and {pair.second.face} face of {pair.second.rod} "
-        f"may touch in the marked zone, gap {pair.gap:g} mm, penalty {pair.penalty:g} N/mm³"
-        for pair in contacts
-    ]
+def _sketch_caption(contacts: Sequence[ContactPair]) -> str:
+    pairs = []
+    for pair in contacts:
+        second, penalty = opposite(pair.second), f", penalty {pair.penalty:g} N/mm³" if pair.penalty else ""
+        faces = f"{pair.first.face} face of {pair.first.rod} and {second}"
+        pairs.append(f"{pair.name}: {faces} may touch in the marked zone, gap {gap(pair.gap)}{penalty}")
     return "The scene from the side. " + "; ".join(pairs) + ("." if pairs else "")
 
 
@@ -279,6 +291,8 @@ def _cost_row(solver: str, answer: Run) -> dict[str, str]:
         "memory": f"{answer.peak_memory:.0f} MB",
         "residual": f"{quantities.equilibrium_residual:.1e}",
         "penetration": f"{max((contact.penetration for contact in quantities.contacts), default=0.0):.1e} mm",
+        "complementarity": f"{max((each.complementarity_residual for each in quantities.contacts), default=0.0):.1e}",
+        "contact_work": f"{sum(contact.work for contact in quantities.contacts):.1e} N mm",
         "outcome": quantities.outcome,
     }
 

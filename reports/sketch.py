@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from markupsafe import Markup, escape
 
-from cases.scene import Clamp, Gravity, Load, Material, Rod, RodFace, Scene, Support, station_of
+from cases.scene import Clamp, Gravity, Load, Material, Rod, RodFace, Scene, Support, given_gap, station_of
 from reports import sketch_symbols as symbols
 from reports.geometry import AXES, face_extent
 from reports.quantities import Quantities, RodQuantities
@@ -27,6 +27,8 @@ MARGIN = 46.0
 WIDTH = 500.0
 # An arrow whose part in the plane of the drawing is less than this of its length is drawn end on.
 END_ON = 0.3
+# The largest gap to ground that is drawn.
+FARTHEST = 40.0
 # Room below the foot of a text.
 DESCENT = np.array([0.0, 3.0])
 
@@ -66,6 +68,7 @@ def scene_sketch(scene: Scene, quantities: Quantities) -> Markup:
     scale = WIDTH / max(float(across), 2.0 * float(upwards))
     bands = {rod.name: _band(rod, quantities.rod(rod.name), scale * plane) for rod in scene.rods}
     symbols_drawn = [_supports(scene, quantities, bands, scale * plane), _beds(scene, quantities, scale * plane)]
+    symbols_drawn.append(_grounds(scene, quantities, scale * plane))
     symbols_drawn += [_load(load, scene.rod(load.rod), quantities.rod(load.rod), scale * plane) for load in scene.loads]
     points = np.hstack([band.border for band in bands.values()])
     low, high = points.min(axis=1), points.max(axis=1)
@@ -213,6 +216,34 @@ def _beds(scene: Scene, quantities: Quantities, plane: Array) -> _Drawn:
             place = (face + symbols.BED * outward)[:, SPRINGS // 4]
             place = place + (10.0 if outward[1, SPRINGS // 4] < 0.0 else 4.0) * outward[:, SPRINGS // 4]
             drawn.add([*symbols.bed(face, outward), symbols.text("tick", place, words)], place - DESCENT)
+    return drawn
+
+
+def _grounds(scene: Scene, quantities: Quantities, plane: Array) -> _Drawn:
+    """A hatched line for rigid ground, springs and their modulus for a bed, at the gap from the face.
+
+    What is farther away than there is room for is drawn nearer.
+    """
+    drawn = _Drawn([], [])
+    for pair in scene.contacts:
+        if isinstance(pair.second, RodFace) or pair.gap == "drawn":
+            continue
+        station = np.linspace(*pair.zone, SPRINGS)
+        face, normal = _on_face(scene, quantities, pair.first, station, plane)
+        flat = np.linalg.norm(normal, axis=0)
+        modulus = pair.second.modulus
+        if flat.min() < END_ON:
+            drawn.add(symbols.bed_end_on(face))
+            continue
+        outward = normal / flat
+        surface = face + np.minimum(given_gap(pair.gap, station) * np.linalg.norm(plane[0]), FARTHEST) * outward
+        if modulus is None:
+            drawn.add(symbols.ground(surface, outward), *(surface + 6.0 * outward).T)
+            continue
+        place = (surface + symbols.BED * outward)[:, SPRINGS // 4]
+        place = place + (10.0 if outward[1, SPRINGS // 4] < 0.0 else 4.0) * outward[:, SPRINGS // 4]
+        words = symbols.text("tick", place, f"{modulus:g} N/mm³")
+        drawn.add([*symbols.bed(surface, outward), words], place - DESCENT, *(surface + symbols.BED * outward).T)
     return drawn
 
 

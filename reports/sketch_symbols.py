@@ -109,6 +109,15 @@ def bed(faces: Array, outward: Array) -> list[str]:
     return [*parts, f'<polyline class="wall" fill="none" points="{_corners(feet.T)}"/>']
 
 
+def ground(places: Array, outward: Array) -> list[str]:
+    """A hatched line through places; both of shape (2, n)."""
+    parts = [
+        line("hatch", place, place + 5.0 * direction - 5.0 * _turned(direction))
+        for place, direction in zip(places.T, outward.T, strict=True)
+    ]
+    return [*parts, f'<polyline class="wall" fill="none" points="{_corners(places.T)}"/>']
+
+
 def bed_end_on(places: Array) -> list[str]:
     """A bed seen from above: a slanting stroke at each place, shape (2, n)."""
     stroke = np.array([3.5, 3.5])

@@ -56,7 +56,16 @@ def print_run(case: Case, run: Run) -> None:
     console, quantities = _console(), run.quantities
     console.print(f"[bold]{case.title}[/] ({case.name}), {_model(run)}: {quantities.outcome}")
     console.print(f"{_cost(run)}; {quantities.contact_solutions} contact solutions")
-    contacts = Table("contact", "force, N", "centre, mm", "edges middle, mm", "edges outer, mm", "penetration, mm")
+    contacts = Table(
+        "contact",
+        "force, N",
+        "centre, mm",
+        "edges middle, mm",
+        "edges outer, mm",
+        "penetration, mm",
+        "complementarity",
+        "work, N mm",
+    )
     for contact in quantities.contacts:
         contacts.add_row(
             contact.pair,
@@ -65,6 +74,8 @@ def print_run(case: Case, run: Run) -> None:
             stretches(np.ravel(contact.edges).tolist()),
             stretches(np.ravel(contact.edges_outer).tolist()),
             f"{contact.penetration:.2g}",
+            f"{contact.complementarity_residual:.1e}",
+            f"{contact.work:.2g}",
         )
     rods = Table(
         "rod",

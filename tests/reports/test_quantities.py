@@ -208,7 +208,7 @@ def test_all_six_resultants_of_a_tip_force_in_local_components() -> None:
 
 
 def test_every_quantity_has_a_unit_and_a_definition_in_words() -> None:
-    dimensionless = {"equilibrium_residual", "stress_residual"}
+    dimensionless = {"equilibrium_residual", "stress_residual", "complementarity_residual"}
 
     for name, definition in DEFINITIONS.items():
         assert definition.text.endswith("."), name
