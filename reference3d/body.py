@@ -14,7 +14,7 @@ from reference3d.frames import pair_overlap, rod_frame
 from reference3d.grading import Borders, rod_borders
 from reference3d.mesh import box_mesh
 from reference3d.quadratic import line_nodes, nodal_weights
-from reference3d.scope import clamps, forces, isotropic, rectangle, second_face
+from reference3d.scope import clamps, forces, isotropic, rectangle
 
 Array = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
@@ -92,7 +92,7 @@ def _contact_near_start(scene: Scene, rod: Rod) -> bool:
     centres = []
     for pair in scene.contacts:
         overlap = pair_overlap(scene, pair)
-        for side, opposite in ((pair.first, overlap.first), (second_face(pair), overlap.second)):
+        for side, opposite in zip(pair.faces, (overlap.first, overlap.second), strict=False):
             if side.rod == rod.name:
                 centres.append(0.5 * (opposite[0][0] + opposite[0][1]))
     return bool(centres) and float(np.mean(centres)) < 0.5 * rod.length

@@ -5,6 +5,10 @@ F_i = c_n A_i max(-d_i, 0). With the rods condensed onto the contact nodes, d = 
 linear complementarity problem
 
     F >= 0,   w = d0 + (C + diag(1 / (c_n A))) F >= 0,   F^T w = 0.
+
+Where the springs stand for rigid contact, the problem is solved again with the springs moved by what they gave way,
+d0 - F / (c_n A), until the forces stay: then F depends on the penalty no more (augmented Lagrangian: M. J. D. Powell,
+in Optimization, ed. R. Fletcher, Academic Press 1969, 283-298).
 """
 
 from __future__ import annotations
@@ -16,17 +20,19 @@ from numpy.typing import NDArray
 from scipy.linalg import cho_factor, cho_solve
 from scipy.sparse import csc_array
 
-from cases.scene import ContactPair, Scene
+from cases.scene import ContactPair, RodFace, Scene
 from reference3d.frames import face_frame, gaps, pair_overlap
 from reference3d.grading import Borders
 from reference3d.quadratic import line_nodes, locate, nodal_weights, shape_functions
-from reference3d.scope import penalty, second_face
+from reference3d.scope import on_bed, penalty
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
 # block pivoting steps without progress before single pivoting takes over (Judice and Pires 1994)
 PATIENCE = 5
+# how often springs are moved at most, and the change of the forces, of their sum, at which they stay
+MOST_MOVES, STAYING = 20, 1e-6
 
 
 @dataclass(frozen=True)
@@ -39,8 +45,9 @@ class ContactNodes:
     area : tributary areas, mm^2, shape (n_s, n_lateral)
     gap : initial distance of the faces, mm, shape (n_s n_lateral,)
     penalty : N/mm^3
+    rigid : whether penetration is to be taken away: the penalty is not a bed's modulus
     first, second : rows of the normal displacement against n_c at the node and along n_c opposite it, so that
-        d = g + first @ u_1 + second @ u_2, shape (n_s n_lateral, unknowns of the rod)
+        d = g + first @ u_1 + second @ u_2, shape (n_s n_lateral, unknowns of the rod); no second on ground
     """
 
     station: Array
@@ -48,8 +55,9 @@ class ContactNodes:
     area: Array
     gap: Array
     penalty: float
+    rigid: bool
     first: csc_array
-    second: csc_array
+    second: csc_array | None
 
 
 @dataclass(frozen=True)
@@ -77,8 +85,8 @@ def contact_nodes(scene: Scene, pair: ContactPair, borders: dict[str, Borders], 
     symmetric : whether they are those of the halves x >= 0
     """
     overlap = pair_overlap(scene, pair)
-    first, second = (face_frame(scene.rod(side.rod), side.face) for side in (pair.first, second_face(pair)))
-    own, other = borders[pair.first.rod], borders[second_face(pair).rod]
+    first = face_frame(scene.rod(pair.first.rod), pair.first.face)
+    own = borders[pair.first.rod]
     across = own.x if first.lateral_axis == 0 else own.y
     station, along_weight = _inside(own.s, *overlap.first[0])
     lateral, across_weight = _inside(across, max(overlap.first[1][0], across[0]), overlap.first[1][1])
@@ -86,14 +94,20 @@ def contact_nodes(scene: Scene, pair: ContactPair, borders: dict[str, Borders], 
     opposite = overlap.sign[:, None] * points + overlap.shift[:, None]
     if symmetric:  # rods with opposite tangents have opposite x
         opposite[1] = np.abs(opposite[1])
+    opposite_rows = None
+    if isinstance(pair.second, RodFace):
+        second = face_frame(scene.rod(pair.second.rod), pair.second.face)
+        other = borders[pair.second.rod]
+        opposite_rows = _face_rows(other, second.normal_axis, second.side, -float(second.side), opposite)
     return ContactNodes(
         station=station,
         lateral=lateral,
         area=np.outer(along_weight, across_weight),
         gap=np.repeat(gaps(scene, pair, station), len(lateral)),
         penalty=penalty(scene, pair),
+        rigid=not on_bed(pair),
         first=_face_rows(own, first.normal_axis, first.side, -float(first.side), points),
-        second=_face_rows(other, second.normal_axis, second.side, -float(second.side), opposite),
+        second=opposite_rows,
     )
 
 
@@ -196,6 +210,50 @@ def solve_nested(matrix: Array, offset: Array, shapes: list[tuple[int, int]], co
             coarse = force[grid[:: 2 * stride]] > 0.0
             fine = grid[::stride]
             touching[fine] = np.repeat(coarse, 2, axis=0)[: len(fine)]
+
+
+@dataclass(frozen=True)
+class RigidContact:
+    """Solution of a contact problem whose springs stand for rigid contact.
+
+    Attributes
+    ----------
+    force : F, N, shape (n,)
+    given_way : by how much springs are still pressed in, mm, shape (n,)
+    outcome, steps : as of `Complementarity`, over all solutions
+    """
+
+    force: Array
+    given_way: Array
+    outcome: str
+    steps: int
+
+
+def without_penetration(
+    matrix: Array, offset: Array, soft: Array, rigid: NDArray[np.bool_], first: Complementarity
+) -> RigidContact:
+    """Take the penetration away that the springs of rigid contact leave.
+
+    Parameters
+    ----------
+    matrix : C + diag(soft), shape (n, n)
+    soft : 1 / (c_n A), mm/N, shape (n,)
+    rigid : nodes in rigid contact; at the others the springs are meant, shape (n,)
+    first : solution with the springs as they are
+    """
+    answer, steps = first, first.steps
+    moved = np.zeros(len(offset))
+    for _ in range(MOST_MOVES):
+        before = answer.force
+        # springs that have moved so far push this much before they are pressed in
+        moved = np.where(rigid, soft * before, 0.0)
+        answer = solve_complementarity(matrix, offset - moved, before > 0.0)
+        steps += answer.steps
+        if answer.outcome != "converged":
+            break
+        if np.abs(answer.force - before)[rigid].sum() <= STAYING * before.sum():
+            break
+    return RigidContact(answer.force, soft * answer.force - moved, answer.outcome, steps)
 
 
 def near_contact(station: Array, touched: Array, margin: float) -> NDArray[np.bool_]:

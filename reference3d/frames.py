@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from cases.scene import ContactPair, Face, GapTable, Rod, RoundGap, Scene, SceneError
-from reference3d.scope import forces, rectangle, second_face, straight_line
+from cases.scene import ContactPair, Face, GapTable, Ground, Rod, RoundGap, Scene, SceneError
+from reference3d.scope import forces, rectangle, straight_line
 
 Array = NDArray[np.float64]
 
@@ -104,7 +104,7 @@ def face_frame(rod: Rod, face: Face) -> FaceFrame:
 
 
 def pair_overlap(scene: Scene, pair: ContactPair) -> Overlap:
-    """Part of the candidate zone in which the second face lies opposite the first.
+    """Part of the candidate zone in which the second face lies opposite the first: all of it on ground.
 
     A scene already sees to it that the second rod accompanies the whole zone.
 
@@ -113,12 +113,17 @@ def pair_overlap(scene: Scene, pair: ContactPair) -> Overlap:
     SceneError
         if the rods or the faces are not parallel.
     """
-    rod_1, rod_2 = scene.rod(pair.first.rod), scene.rod(second_face(pair).rod)
-    face_1, face_2 = face_frame(rod_1, pair.first.face), face_frame(rod_2, second_face(pair).face)
+    rod_1 = scene.rod(pair.first.rod)
+    face_1 = face_frame(rod_1, pair.first.face)
+    if isinstance(pair.second, Ground):
+        whole = (pair.zone, (-face_1.half_width, face_1.half_width))
+        return Overlap(whole, whole, sign=np.ones(2), shift=np.zeros(2))
+    rod_2 = scene.rod(pair.second.rod)
+    face_2 = face_frame(rod_2, pair.second.face)
     key = f"contacts.{pair.name}"
     if np.linalg.norm(face_1.normal + face_2.normal) > ANGLE_TOLERANCE:
         angle = np.degrees(np.arccos(np.clip(face_1.normal @ face_2.normal, -1.0, 1.0)))
-        found = f"'{second_face(pair).face}', turned by {angle:.4g} degrees from the first face"
+        found = f"'{pair.second.face}', turned by {angle:.4g} degrees from the first face"
         remedy = "the 3D reference needs parallel faces that face each other (180 degrees)"
         raise SceneError(f"{key}.second.face", found, remedy)
     along = float(face_1.tangent @ face_2.tangent)
@@ -167,7 +172,7 @@ def is_symmetric(scene: Scene) -> bool:
         if abs(across) > 1e-12 * np.linalg.norm(force):
             return False
     for pair in scene.contacts:
-        if not {pair.first.face, second_face(pair).face} <= {"top", "bottom"}:
+        if not {face.face for face in pair.faces} <= {"top", "bottom"}:
             return False
         overlap = pair_overlap(scene, pair)
         if abs(overlap.shift[1]) > 1e-9 * rectangle(scene.rod(pair.first.rod)).width:

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from cases.scene import LineLoad, Rod, Scene
 from reference3d.frames import pair_overlap
-from reference3d.scope import clamps, forces, rectangle, second_face
+from reference3d.scope import clamps, forces, on_bed, rectangle
 
 Array = NDArray[np.float64]
 
@@ -25,6 +25,8 @@ CLAMP_CELL = 0.08
 LOAD_CELL = 0.3
 ZONE_END_CELL = 0.15
 ZONE_CELL = 0.25
+# the pressure of a bed has no corners and no steep edges
+BED_CELL = 0.8
 LARGEST_CELL = 1.2
 SECTION_CELL = 0.5
 # a broad side is not divided into more coarse cells than this
@@ -83,18 +85,16 @@ def rod_borders(scene: Scene, rod: Rod, refinement: int, symmetric: bool) -> Bor
         else:
             add(load.position, LOAD_CELL * side)
     for pair in scene.contacts:
-        for face, opposite in zip(
-            (pair.first, second_face(pair)),
-            (pair_overlap(scene, pair).first, pair_overlap(scene, pair).second),
-            strict=True,
-        ):
+        overlap = pair_overlap(scene, pair)
+        for face, opposite in zip(pair.faces, (overlap.first, overlap.second), strict=False):
             if face.rod != rod.name:
                 continue
-            sections = [rectangle(scene.rod(name)) for name in (pair.first.rod, second_face(pair).rod)]
+            sections = [rectangle(scene.rod(each.rod)) for each in pair.faces]
             smaller = min(min(each.width, each.height) for each in sections)
+            at_ends, within = (BED_CELL, BED_CELL) if on_bed(pair) else (ZONE_END_CELL, ZONE_CELL)
             for place in opposite[0]:
-                add(place, ZONE_END_CELL * smaller)
-            zones.append(_Zone(*opposite[0], ZONE_CELL * smaller))
+                add(place, at_ends * smaller)
+            zones.append(_Zone(*opposite[0], within * smaller))
             across["x" if face.face in ("top", "bottom") else "y"] += opposite[1]
     return Borders(
         x=across_borders(section.width, across["x"], side, refinement, symmetric),

@@ -128,6 +128,18 @@ def factorise(layer: Callable[[int], Array], kind: IntArray, held: Mapping[int, 
     )
 
 
+def factor_bytes(unknowns: int, layers: int, kinds: int) -> float:
+    """Memory that factorising a chain takes at its largest.
+
+    Parameters
+    ----------
+    unknowns : m, of a plane
+    layers, kinds : how many there are
+    """
+    # two matrices a border plane, three a kind and four while it waits; one layer's matrix with its blocks
+    return 8.0 * unknowns**2 * (2.0 * layers + 7.0 * kinds + 16.0)
+
+
 def _condense(matrix: Array) -> tuple[Array, Array, Array]:
     """L_m, L_m^-1 K_m,(start, end) and the matrix condensed onto start and end."""
     size = len(matrix) // 3

@@ -9,6 +9,7 @@ from cases.scene import (
     Clamp,
     ContactPair,
     Gravity,
+    Ground,
     Helix,
     Line,
     LineLoad,
@@ -17,7 +18,6 @@ from cases.scene import (
     Pressure,
     Rectangle,
     Rod,
-    RodFace,
     Scene,
     SceneError,
     SectionForce,
@@ -45,7 +45,7 @@ def require_treatable(scene: Scene) -> None:
     ------
     SceneError
         if a rod is curved, twisted, not isotropic or not of rectangular section, a support is not a clamp at rest,
-        a load is not a force, a rod may touch ground, or there is a joint or a bed.
+        a load is not a force, or there is a joint or a bed.
     """
     for rod in scene.rods:
         straight_line(rod)
@@ -53,8 +53,6 @@ def require_treatable(scene: Scene) -> None:
         isotropic(rod)
     clamps(scene)
     forces(scene)
-    for pair in scene.contacts:
-        second_face(pair)
     if scene.joints:
         remedy = f"the 3D reference does not join rods {INSTEAD}"
         raise SceneError("joints", f"{len(scene.joints)}", remedy)
@@ -62,16 +60,15 @@ def require_treatable(scene: Scene) -> None:
         raise SceneError("beds", f"{len(scene.beds)}", f"the 3D reference does not lay rods on beds {INSTEAD}")
 
 
-def second_face(pair: ContactPair) -> RodFace:
-    """The second face of a pair, seen to be one of a rod; SceneError if it is ground."""
-    if isinstance(pair.second, RodFace):
-        return pair.second
-    remedy = f"the 3D reference does not lay rods on ground {INSTEAD}"
-    raise SceneError(f"contacts.{pair.name}.second", "ground", remedy)
+def on_bed(pair: ContactPair) -> bool:
+    """Whether a rod lies on a bed, whose springs are meant; those of all other pairs stand for rigid contact."""
+    return isinstance(pair.second, Ground) and pair.second.modulus is not None
 
 
 def penalty(scene: Scene, pair: ContactPair) -> float:
-    """Penalty of a pair as given, or one so stiff that what it leaves does not count, N/mm^3."""
+    """Modulus of a bed; else the penalty as given, or one so stiff that what it leaves hardly counts, N/mm^3."""
+    if isinstance(pair.second, Ground) and pair.second.modulus is not None:
+        return pair.second.modulus
     if pair.penalty is not None:
         return pair.penalty
     rods = [scene.rod(face.rod) for face in pair.faces]

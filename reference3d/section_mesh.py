@@ -33,7 +33,7 @@ RING_BLOCKS, MOST_SLENDER = 8, 4.0
 WALL_BLOCKS = 2
 # blocks of a polygon, over its area by half of its border (the wall's thickness where there is one): size that gmsh is
 # asked for, which it halves once it has made them
-POLYGON_BLOCK = 8.0
+POLYGON_BLOCK = 12.0
 # nodes closer than this, over the size of the section, are one
 SAME = 1e-9
 

@@ -6,6 +6,8 @@ the skeleton, whose motion completes the answer.
 
 from __future__ import annotations
 
+import math
+import os
 import time
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -13,9 +15,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from cases.scene import Scene
+from cases.scene import Scene, SceneError
 from reference3d.holds import Hold, holds, require_held, structures
-from reference3d.plane_chain import factorise, solve
+from reference3d.plane_chain import factor_bytes, factorise, solve
 from reference3d.solid_body import SolidBody, nodal_loads, solid_body
 from reference3d.solid_solution import SolidRod, SolidSolution
 from reference3d.solution import Cost
@@ -26,6 +28,8 @@ Array = NDArray[np.float64]
 # zero, as in a rod that moves as a rigid one, of this share of the largest stiffness times the largest displacement
 RESIDUAL_TOLERANCE = 1e-7
 STIFFNESS_SHARE = 1e-6
+# share of the machine's memory that a factor may take
+MEMORY_SHARE = 0.8
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,12 +57,14 @@ def solve_solid(scene: Scene, refinement: int) -> SolidSolution:
     Raises
     ------
     SceneError
-        if a rod is not held.
+        if a rod is not held, or the machine's memory is too small.
     """
     begin = time.perf_counter()
     bodies = {rod.name: solid_body(scene, rod, refinement) for rod in scene.rods}
     held = {name: holds(scene, body) for name, body in bodies.items()}
     require_held(scene, bodies, held, structures(scene))
+    for body in bodies.values():
+        _require_memory(body)
     ready = time.perf_counter()
     responses = {name: _respond(scene, body, held[name]) for name, body in bodies.items()}
     motion = _joint_motions(scene, bodies, responses)
@@ -100,6 +106,23 @@ def solve_solid(scene: Scene, refinement: int) -> SolidSolution:
         rods=rods,
         reactions=reactions,
     )
+
+
+def _require_memory(body: SolidBody) -> None:
+    """Refuse a body whose factor would not fit into this machine's memory; SceneError with the numbers."""
+    need = factor_bytes(3 * len(body.section.nodes), len(body.kind), len(body.layers))
+    present = physical_memory()
+    if need > MEMORY_SHARE * present:
+        found = f"{np.prod(body.shape)} unknowns that take {need / 1e9:.0f} GB where there are {present / 1e9:.0f}"
+        remedy = "the 3D reference needs a machine with more memory; use --model rod"
+        raise SceneError(f"rods.{body.rod.name}", found, remedy)
+
+
+def physical_memory() -> float:
+    """Memory of this machine, bytes; endless where it does not tell."""
+    if not hasattr(os, "sysconf"):
+        return math.inf
+    return float(os.sysconf("SC_PHYS_PAGES")) * float(os.sysconf("SC_PAGE_SIZE"))
 
 
 def _respond(scene: Scene, body: SolidBody, held: Mapping[int, Hold]) -> _Responses:

@@ -76,21 +76,15 @@ class RodResult:
 class PairResult:
     """What is kept of one contact pair, on the full grid of contact nodes.
 
-    penalty : N/mm^3
-    station, lateral : mm, shapes (n_s,), (n_lateral,); area, gap, shape (n_s, n_lateral)
+    station, lateral : mm, shapes (n_s,), (n_lateral,); area, mm^2, gap, mm, pressure, MPa, shape (n_s, n_lateral)
     """
 
     pair: ContactPair
-    penalty: float
     station: Array
     lateral: Array
     area: Array
     gap: Array
-
-    @property
-    def pressure(self) -> Array:
-        """p_n, MPa, shape (n_s, n_lateral)."""
-        return np.asarray(self.penalty * np.maximum(-self.gap, 0.0))
+    pressure: Array
 
 
 @dataclass(frozen=True)

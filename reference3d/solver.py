@@ -10,6 +10,7 @@ other node is seen to be open afterwards.
 from __future__ import annotations
 
 import time
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,13 +18,20 @@ from scipy.sparse import csc_array, hstack
 
 from cases.scene import ContactPair, Material, Rod, Scene, SceneError
 from reference3d.body import Body, discretise
-from reference3d.contact import ContactNodes, contact_nodes, near_contact, solve_complementarity, solve_nested
+from reference3d.contact import (
+    ContactNodes,
+    contact_nodes,
+    near_contact,
+    solve_complementarity,
+    solve_nested,
+    without_penetration,
+)
 from reference3d.factor import compliance
 from reference3d.factor import solve as solve_layers
 from reference3d.field import Field, mirrored
 from reference3d.frames import is_symmetric, rod_frame
 from reference3d.quadratic import line_nodes
-from reference3d.scope import clamps, rectangle, require_treatable, second_face
+from reference3d.scope import clamps, rectangle, require_treatable
 from reference3d.solid_solution import SolidSolution
 from reference3d.solid_solver import solve_solid
 from reference3d.solution import Cost, PairResult, RodResult, Solution
@@ -88,14 +96,15 @@ def _solve_bars(scene: Scene, refinement: int, located: Solution | None) -> Solu
 
     candidates = [_candidates(pair, grid, located) for pair, grid in zip(scene.contacts, nodes, strict=True)]
     while True:
-        forces, outcome, tried = _contact_forces(scene, bodies, nodes, candidates)
+        forces, given_way, outcome, tried = _contact_forces(scene, bodies, nodes, candidates)
         steps += tried
         fields, gaps = _respond(scene, bodies, nodes, forces)
         missed = [~chosen & (gap < 0.0) for chosen, gap in zip(candidates, gaps, strict=True)]
         if not any(miss.any() for miss in missed):
             break
         candidates = [np.ones_like(chosen) for chosen in candidates]
-    return _collect(scene, refinement, symmetric, bodies, nodes, forces, gaps, fields, outcome, steps, (begin, ready))
+    found = _Found(forces, given_way, gaps, fields, outcome, steps)
+    return _collect(scene, refinement, symmetric, bodies, nodes, found, (begin, ready))
 
 
 def _is_clamped_bars(scene: Scene) -> bool:
@@ -131,7 +140,7 @@ def _candidates(pair: ContactPair, nodes: ContactNodes, located: Solution | None
         return np.ones(nodes.area.size, dtype=bool)
     coarse = located.pairs[pair.name]
     touched = coarse.station[(coarse.pressure > 0.0).any(axis=1)]
-    sections = [rectangle(located.scene.rod(side.rod)) for side in (pair.first, second_face(pair))]
+    sections = [rectangle(located.scene.rod(side.rod)) for side in pair.faces]
     margin = MARGIN * min(min(section.width, section.height) for section in sections)
     near = near_contact(nodes.station, touched, margin)
     return np.repeat(near, len(nodes.lateral))
@@ -141,25 +150,28 @@ def _sides(scene: Scene, nodes: list[ContactNodes], rod: Rod) -> list[csc_array 
     """For each pair, the rows of the normal displacement of this rod's face, if it is in the pair."""
     found: list[csc_array | None] = []
     for pair, grid in zip(scene.contacts, nodes, strict=True):
-        is_second = second_face(pair).rod == rod.name
-        found.append(grid.first if pair.first.rod == rod.name else grid.second if is_second else None)
+        rows = zip(pair.faces, (grid.first, grid.second), strict=False)
+        found.append(next((each for face, each in rows if face.rod == rod.name), None))
     return found
 
 
 def _contact_forces(
     scene: Scene, bodies: dict[str, Body], nodes: list[ContactNodes], candidates: list[BoolArray]
-) -> tuple[list[Array], str, int]:
-    """Nodal contact forces of each pair, outcome of the contact iteration, and the active sets it tried."""
+) -> tuple[list[Array], list[Array], str, int]:
+    """Nodal contact forces of each pair, how far their springs give way, outcome, and the active sets tried."""
     counts = [int(chosen.sum()) for chosen in candidates]
     starts = np.concatenate([[0], np.cumsum(counts)])
     total = int(starts[-1])
     forces = [np.zeros(grid.area.size) for grid in nodes]
+    given_way = [np.zeros(grid.area.size) for grid in nodes]
     if total == 0:
-        return forces, "converged", 0
+        return forces, given_way, "converged", 0
     matrix, offset = np.zeros((total, total)), np.zeros(total)
+    soft, rigid = np.zeros(total), np.zeros(total, dtype=bool)
     for index, (grid, chosen) in enumerate(zip(nodes, candidates, strict=True)):
         place = np.arange(starts[index], starts[index + 1])
-        matrix[place, place] += 1.0 / (grid.penalty * grid.area.ravel()[chosen])
+        soft[place], rigid[place] = 1.0 / (grid.penalty * grid.area.ravel()[chosen]), grid.rigid
+        matrix[place, place] += soft[place]
         offset[place] += grid.gap[chosen]
     for body in bodies.values():
         rows, places = [], []
@@ -178,12 +190,14 @@ def _contact_forces(
         matrix[np.ix_(place, place)] += work[:-1, :-1]
         offset[place] += work[:-1, -1]
     if all(chosen.all() for chosen in candidates):
-        answer = solve_nested(matrix, offset, [grid.area.shape for grid in nodes])
+        sprung = solve_nested(matrix, offset, [grid.area.shape for grid in nodes])
     else:
-        answer = solve_complementarity(matrix, offset, offset < 0.0)
+        sprung = solve_complementarity(matrix, offset, offset < 0.0)
+    answer = without_penetration(matrix, offset, soft, rigid, sprung)
     for index, chosen in enumerate(candidates):
         forces[index][chosen] = answer.force[starts[index] : starts[index + 1]]
-    return forces, answer.outcome, answer.steps
+        given_way[index][chosen] = answer.given_way[starts[index] : starts[index + 1]]
+    return forces, given_way, answer.outcome, answer.steps
 
 
 def _respond(
@@ -207,24 +221,41 @@ def _respond(
     return fields, gaps
 
 
+@dataclass(frozen=True)
+class _Found:
+    """What was found for every pair and every body.
+
+    Attributes
+    ----------
+    forces : at the contact nodes of each pair, N
+    given_way, gaps : how far the springs of each pair give way, and distance of its faces, mm
+    fields : displacement and force of each body
+    outcome, steps : of the contact iteration
+    """
+
+    forces: list[Array]
+    given_way: list[Array]
+    gaps: list[Array]
+    fields: dict[str, tuple[Array, Array]]
+    outcome: str
+    steps: int
+
+
 def _collect(
     scene: Scene,
     refinement: int,
     symmetric: bool,
     bodies: dict[str, Body],
     nodes: list[ContactNodes],
-    forces: list[Array],
-    gaps: list[Array],
-    fields: dict[str, tuple[Array, Array]],
-    outcome: str,
-    steps: int,
+    found: _Found,
     moments: tuple[float, float],
 ) -> Solution:
     """The solution of the full section from that of the bodies."""
+    outcome = found.outcome
     rods: dict[str, RodResult] = {}
     energy, residual, moved, volume, elements, unknowns = 0.0, 0.0, 0.0, 0.0, 0, 0
     for name, body in bodies.items():
-        displaced, force = fields[name]
+        displaced, force = found.fields[name]
         internal = body.stiffness.apply(displaced)
         out_of_balance = internal - force
         largest = float(np.abs(internal).max())
@@ -243,11 +274,13 @@ def _collect(
         )
         rods[name] = RodResult(body.rod, mirrored(field) if symmetric else field, reaction)
     pairs, mismatch, penetrating = {}, 0.0, 0.0
-    for pair, grid, force, gap in zip(scene.contacts, nodes, forces, gaps, strict=True):
-        pairs[pair.name] = _pair_result(pair, grid, force, gap, symmetric)
-        implied = -force / (grid.penalty * grid.area.ravel())
-        mismatch = max(mismatch, float(np.abs(gap - implied)[force > 0.0].max(initial=0.0)))
-        penetrating -= (2.0 if symmetric else 1.0) * 0.5 * float(force @ implied)
+    for pair, grid, force, way, gap in zip(
+        scene.contacts, nodes, found.forces, found.given_way, found.gaps, strict=True
+    ):
+        pairs[pair.name] = _pair_result(pair, grid, force, way, gap, symmetric)
+        mismatch = max(mismatch, float(np.abs(gap + way)[force > 0.0].max(initial=0.0)))
+        if grid.rigid:
+            penetrating += (2.0 if symmetric else 1.0) * 0.5 * float(force @ np.abs(way))
     if outcome == "converged" and residual > RESIDUAL_TOLERANCE:
         outcome = f"refused: forces are out of balance by {residual:.1e} of the largest"
     if outcome == "converged" and mismatch > GAP_TOLERANCE * moved:
@@ -258,7 +291,7 @@ def _collect(
     return Solution(
         scene=scene,
         outcome=outcome,
-        contact_solutions=steps,
+        contact_solutions=found.steps,
         strain_energy=energy,
         cost=Cost(unknowns, ready - begin, time.perf_counter() - ready),
         residual=residual,
@@ -286,16 +319,20 @@ def _support_reaction(scene: Scene, body: Body, nodal: Array, symmetric: bool, e
     return np.asarray((local @ rod_frame(body.rod).axes).ravel())
 
 
-def _pair_result(pair: ContactPair, nodes: ContactNodes, force: Array, gap: Array, symmetric: bool) -> PairResult:
-    # in contact the gap follows from the force, free of the cancellation in the difference of displacements
+def _pair_result(
+    pair: ContactPair, nodes: ContactNodes, force: Array, way: Array, gap: Array, symmetric: bool
+) -> PairResult:
+    # in contact the gap follows from the springs, free of the cancellation in the difference of displacements
     shape = nodes.area.shape
     area = nodes.area
-    gap = np.where(force > 0.0, -force / (nodes.penalty * area.ravel()), np.maximum(gap, 0.0)).reshape(shape)
+    gap = np.where(force > 0.0, -way, np.maximum(gap, 0.0)).reshape(shape)
+    pressure = force.reshape(shape) / area
     lateral = nodes.lateral
     if symmetric:
         half = area.copy()
         half[:, 0] *= 2.0
         area = np.concatenate([half[:, :0:-1], half], axis=1)
         gap = np.concatenate([gap[:, :0:-1], gap], axis=1)
+        pressure = np.concatenate([pressure[:, :0:-1], pressure], axis=1)
         lateral = np.concatenate([-lateral[:0:-1], lateral])
-    return PairResult(pair, nodes.penalty, nodes.station, lateral, area, gap)
+    return PairResult(pair, nodes.station, lateral, area, gap, pressure)

@@ -111,14 +111,6 @@ def test_other_supports_than_clamps_at_rest_are_refused_where_there_is_contact(t
     assert caught.value.key == key
 
 
-def test_ground_is_refused(two_cantilevers):
-    scene = two_cantilevers(50000.0, 0.0)
-    pair = replace(scene.contacts[0], second=Ground(), gap=1.0)
-
-    with pytest.raises(SceneError, match=r"contacts\.lower-upper\.second: found ground; .* use --model rod"):
-        solve(replace(scene, contacts=(pair,)))
-
-
 def test_joints_are_refused_where_there_is_contact(two_cantilevers):
     beyond = Line((300.0, 0.0, 0.0), (300.0, 0.0, 60.0), (0.0, 1.0, 0.0))
     scene = with_third_rod(two_cantilevers(50000.0, 0.0), centre_line=beyond)

@@ -34,7 +34,7 @@ from cases.scene import (
     Spline,
     Support,
 )
-from reference3d import SolidSolution, formal_order, grid_convergence, solve, solve_sequence
+from reference3d import SolidSolution, formal_order, grid_convergence, solid_solver, solve, solve_sequence
 from reference3d.solid_solver import solve_solid
 
 YOUNG, RATIO = 200000.0, 0.3
@@ -352,6 +352,13 @@ def test_a_bed_pushes_as_far_as_a_rigid_bar_sinks():
     np.testing.assert_allclose(
         solution.displacement("rod", np.array([0.0, 20.0]))[1], -0.3 / modulus - 0.3 * 5.0 / YOUNG, rtol=1e-7
     )
+
+
+def test_a_mesh_that_would_not_fit_into_memory_is_refused_with_the_numbers(monkeypatch):
+    monkeypatch.setattr(solid_solver, "physical_memory", lambda: 1e6)
+
+    with pytest.raises(SceneError, match=r"rods\.rod: found \d+ unknowns that take 0 GB where there are 0; .*memory"):
+        solve(one_rod(RING, SQUARE, ()), 1)
 
 
 def test_hollow_sections_answer_with_their_mean_displacement():
