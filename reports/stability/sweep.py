@@ -54,6 +54,7 @@ class Picture:
     ----------
     key : of the quantity in what was measured
     x, y : titles of the axes
+    ticks : names of 1, 2, ... along x, where these are kinds and not numbers
     """
 
     key: str
@@ -62,6 +63,7 @@ class Picture:
     y: str
     log_x: bool = True
     log_y: bool = True
+    ticks: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
 
 _SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 # Relative errors from here on are written in per cent.
@@ -19,20 +18,14 @@ def share(value: float) -> str:
     return number(abs(value))
 
 
-def number(value: float) -> str:
-    """Two digits, with a power of ten where the number is very large or small."""
+def number(value: float, digits: int = 2) -> str:
+    """A few digits, with a power of ten where the number is very large or small."""
     if value == 0.0:
         return "0"
-    rounded = float(f"{value:.1e}")
+    rounded = float(f"{value:.{digits - 1}e}")
     if 1e-3 <= abs(rounded) < 1e5:
-        return f"{rounded:g}".replace("-", "−")
-    mantissa, exponent = f"{rounded:.1e}".split("e")
+        return f"{rounded:.6g}".replace("-", "−")
+    mantissa, exponent = f"{rounded:.{digits - 1}e}".split("e")
     power = f"10{str(int(exponent)).translate(_SUPERSCRIPTS)}"
-    short = mantissa.removesuffix(".0")
+    short = mantissa.rstrip("0").rstrip(".") if "." in mantissa else mantissa
     return power if short == "1" else f"{short}·{power}".replace("-", "−")
-
-
-def and_list(words: Iterable[str]) -> str:
-    """Words with commas and an 'and'."""
-    listed = list(words)
-    return listed[0] if len(listed) == 1 else f"{', '.join(listed[:-1])} and {listed[-1]}"
