@@ -1,12 +1,15 @@
 """Direct solution of a chain of planes of nodes, in any of which unknowns may be held.
 
 As in `factor`, the middle plane of a layer is eliminated first and the border planes then are block tridiagonal. Here
-border planes may be held: some of their unknowns, or some combinations of them, are given. `factor` is for rods held
-at their ends alone, with many contact forces.
+border planes may be held: some of their unknowns, or some combinations of them, are given; and where many layers are
+alike, the plane between two of them is eliminated once for all such pairs, then that between two pairs, and so on, so
+that a long helix costs little more than a short one. `factor` is for rods held at their ends alone, with many contact
+forces.
 """
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
@@ -18,6 +21,9 @@ from reference3d.factor import backward, cholesky, forward
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 BoolArray = NDArray[np.bool_]
+
+# pairs of layers that must be alike for one elimination to cost less than one for each
+FEWEST_PAIRS = 3
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,24 +56,120 @@ def combinations_held(rows: Array) -> HeldPlane:
     return HeldPlane(np.ascontiguousarray(basis), np.arange(rows.shape[1]) < len(rows))
 
 
+@dataclass(frozen=True)
+class Stretch:
+    """Layers of which only the first and last plane are left.
+
+    Attributes
+    ----------
+    which : kind of the stretch
+    start, end : planes
+    """
+
+    which: int
+    start: int
+    end: int
+
+
+@dataclass(frozen=True)
+class Step:
+    """Elimination of a plane from between two others; which : kind of the stretch from `start` to `end`."""
+
+    which: int
+    start: int
+    inside: int
+    end: int
+
+
 @dataclass(frozen=True, eq=False)
 class PlaneChain:
     """Factorised chain.
 
     Attributes
     ----------
-    kind : of each layer
-    held : by number of the border plane
-    middle, middle_coupling : L_m of K_mm = L_m L_m^T, and L_m^-1 K_m,(start, end), for each kind
-    border, border_coupling : L_k of the border planes, last one included, and L_k^-1 K_k,k+1
+    held : by number of the plane
+    steps : eliminations of planes inside stretches, in their order
+    middle, middle_coupling : L of the plane eliminated, and L^-1 K_(inside),(start, end), by kind of stretch
+    stretches : what is left after these, one after the other
+    border, border_coupling : L_k of the planes between stretches, both ends included, and L_k^-1 K_k,k+1
     """
 
-    kind: IntArray
     held: Mapping[int, HeldPlane]
-    middle: tuple[Array, ...]
-    middle_coupling: tuple[Array, ...]
+    steps: tuple[Step, ...]
+    middle: Mapping[int, Array]
+    middle_coupling: Mapping[int, Array]
+    stretches: tuple[Stretch, ...]
     border: tuple[Array, ...]
     border_coupling: tuple[Array, ...]
+
+
+class _Condensed:
+    """Kinds of stretches with their matrices on their two end planes, made when they are asked for."""
+
+    def __init__(self, layer: Callable[[int], Array], kinds: int) -> None:
+        self.layer, self.count = layer, kinds
+        self.pair_of: dict[int, int] = {}
+        self.half: dict[int, int] = {}
+        self.middle: dict[int, Array] = {}
+        self.coupling: dict[int, Array] = {}
+        self.matrix: dict[int, Array] = {}
+
+    def pair(self, which: int) -> int:
+        """Kind of two stretches of a kind, one after the other."""
+        if which not in self.pair_of:
+            self.pair_of[which], self.half[self.count] = self.count, which
+            self.count += 1
+        return self.pair_of[which]
+
+    def on_ends(self, which: int) -> Array:
+        """Matrix of a kind of stretch on its first and last plane, shape (2 m, 2 m)."""
+        if which not in self.matrix:
+            if which in self.half:
+                one = self.on_ends(self.half[which])
+                size = len(one) // 2
+                whole = np.zeros((3 * size, 3 * size))
+                whole[: 2 * size, : 2 * size] += one
+                whole[size:, size:] += one
+            else:
+                whole = self.layer(which)
+            self.middle[which], self.coupling[which], self.matrix[which] = _condense(whole)
+        return self.matrix[which]
+
+
+def _merged(
+    stretches: list[Stretch], condensed: _Condensed, held: Mapping[int, HeldPlane]
+) -> tuple[list[Stretch], list[Step]]:
+    """Neighbouring stretches of one kind joined in pairs, where there are enough of them."""
+    pairs: list[int] = []
+    index = 0
+    while index + 1 < len(stretches):
+        one, other = stretches[index : index + 2]
+        alike = one.which == other.which and one.end not in held
+        pairs += [index] * alike
+        index += 2 if alike else 1
+    often = Counter(stretches[index].which for index in pairs)
+    chosen = {index for index in pairs if often[stretches[index].which] >= FEWEST_PAIRS}
+    found: list[Stretch] = []
+    steps: list[Step] = []
+    for index, stretch in enumerate(stretches):
+        if index in chosen:
+            which, end = condensed.pair(stretch.which), stretches[index + 1].end
+            found.append(Stretch(which, stretch.start, end))
+            steps.append(Step(which, stretch.start, stretch.end, end))
+        elif index - 1 not in chosen:
+            found.append(stretch)
+    return found, steps
+
+
+def _plan(condensed: _Condensed, kind: IntArray, held: Mapping[int, HeldPlane]) -> tuple[list[Stretch], list[Step]]:
+    """Stretches that are left when all that is worth it is joined, and the steps to there."""
+    stretches = [Stretch(which, 2 * index, 2 * index + 2) for index, which in enumerate(kind.tolist())]
+    steps = [Step(each.which, each.start, each.start + 1, each.end) for each in stretches]
+    while True:
+        stretches, joined = _merged(stretches, condensed, held)
+        if not joined:
+            return stretches, steps
+        steps += joined
 
 
 def factorise(layer: Callable[[int], Array], kind: IntArray, held: Mapping[int, HeldPlane]) -> PlaneChain:
@@ -77,26 +179,25 @@ def factorise(layer: Callable[[int], Array], kind: IntArray, held: Mapping[int, 
     ----------
     layer : matrix of a kind of layer by its number, start, middle and end plane one after the other, (3 m, 3 m)
     kind : of each layer, shape (n_layers,)
-    held : by number of the border plane
+    held : by number of the plane; the even ones are borders of layers, which alone may be held
 
     Raises
     ------
     numpy.linalg.LinAlgError
         if the chain is not positive definite, as one that is not held.
     """
-    condensed: dict[int, Array] = {}
-    middle: dict[int, Array] = {}
-    coupling_of: dict[int, Array] = {}
-    last = {int(which): index for index, which in enumerate(kind)}
+    condensed = _Condensed(layer, int(kind.max()) + 1)
+    stretches, steps = _plan(condensed, kind, held)
+    last = {each.which: index for index, each in enumerate(stretches)}
     border, border_coupling = [], []
     carried: Array | None = None
-    for index, which in enumerate(kind.tolist()):
-        if which not in condensed:
-            middle[which], coupling_of[which], condensed[which] = _condense(layer(which))
-        block = condensed[which] if last[which] > index else condensed.pop(which)
+    for index, stretch in enumerate(stretches):
+        block = condensed.on_ends(stretch.which)
+        if last[stretch.which] == index:
+            condensed.matrix.pop(stretch.which)
         size = len(block) // 2
         first, across, second = block[:size, :size], block[:size, size:], block[size:, size:]
-        start, end = held.get(index), held.get(index + 1)
+        start, end = held.get(stretch.start), held.get(stretch.end)
         if start is not None and start.basis is not None:
             first, across = start.basis.T @ first @ start.basis, start.basis.T @ across
         if end is not None and end.basis is not None:
@@ -114,30 +215,31 @@ def factorise(layer: Callable[[int], Array], kind: IntArray, held: Mapping[int, 
         border.append(factor)
         border_coupling.append(coupling)
     assert carried is not None  # there is at least one layer
-    if len(kind) in held:
-        _hold(carried, held[len(kind)].fixed)
+    if stretches[-1].end in held:
+        _hold(carried, held[stretches[-1].end].fixed)
     border.append(cholesky(carried.T))
-    kinds = sorted(middle)
     return PlaneChain(
-        np.searchsorted(kinds, kind).astype(np.int64),
         held,
-        tuple(middle[each] for each in kinds),
-        tuple(coupling_of[each] for each in kinds),
+        tuple(steps),
+        condensed.middle,
+        condensed.coupling,
+        tuple(stretches),
         tuple(border),
         tuple(border_coupling),
     )
 
 
-def factor_bytes(unknowns: int, layers: int, kinds: int) -> float:
+def factor_bytes(unknowns: int, kind: IntArray, held: Mapping[int, HeldPlane]) -> float:
     """Memory that factorising a chain takes at its largest.
 
     Parameters
     ----------
     unknowns : m, of a plane
-    layers, kinds : how many there are
+    kind, held : of `factorise`
     """
-    # two matrices a border plane, three a kind and four while it waits; one layer's matrix with its blocks
-    return 8.0 * unknowns**2 * (2.0 * layers + 7.0 * kinds + 16.0)
+    stretches, steps = _plan(_Condensed(lambda _: np.empty((0, 0)), int(kind.max()) + 1), kind, held)
+    # two matrices a stretch, three a kind and four while it waits; one layer's matrix with its blocks
+    return 8.0 * unknowns**2 * (2.0 * len(stretches) + 7.0 * len({step.which for step in steps}) + 16.0)
 
 
 def _condense(matrix: Array) -> tuple[Array, Array, Array]:
@@ -163,33 +265,31 @@ def solve(chain: PlaneChain, force: Array) -> Array:
     force : N, shape (n_planes, m, n_loads); what acts on held unknowns has no effect. The result is mm, likewise.
     """
     state = force.copy()
-    for number, plane in chain.held.items():
-        state[2 * number] = plane.into(state[2 * number])
     size = force.shape[1]
+    for number, plane in chain.held.items():
+        state[number] = plane.into(state[number])
 
     def into(number: int, values: Array) -> Array:
         return chain.held[number].into(values) if number in chain.held else values
 
-    def out_of(number: int, values: Array) -> Array:
-        return chain.held[number].out_of(values) if number in chain.held else values
-
-    for layer, which in enumerate(chain.kind):
-        start, inside, end = 2 * layer, 2 * layer + 1, 2 * layer + 2
-        state[inside] = forward(chain.middle[which], state[inside])
-        reduced = chain.middle_coupling[which].T @ state[inside]
-        state[start] = forward(chain.border[layer], state[start] - into(layer, reduced[:size]))
-        state[end] -= into(layer + 1, reduced[size:]) + chain.border_coupling[layer].T @ state[start]
-    state[-1] = out_of(len(chain.kind), backward(chain.border[-1], forward(chain.border[-1], state[-1])))
-    for layer in range(len(chain.kind) - 1, -1, -1):
-        which = chain.kind[layer]
-        start, inside, end = 2 * layer, 2 * layer + 1, 2 * layer + 2
-        beyond = state[end]
-        if layer + 1 in chain.held:
-            plane = chain.held[layer + 1]
-            beyond = beyond if plane.basis is None else plane.basis.T @ beyond
-        state[start] = out_of(
-            layer, backward(chain.border[layer], state[start] - chain.border_coupling[layer] @ beyond)
-        )
-        borders = np.concatenate([state[start], state[end]])
-        state[inside] = backward(chain.middle[which], state[inside] - chain.middle_coupling[which] @ borders)
+    for step in chain.steps:
+        state[step.inside] = forward(chain.middle[step.which], state[step.inside])
+        reduced = chain.middle_coupling[step.which].T @ state[step.inside]
+        state[step.start] -= into(step.start, reduced[:size])
+        state[step.end] -= into(step.end, reduced[size:])
+    for stretch, factor, coupling in zip(chain.stretches, chain.border[:-1], chain.border_coupling, strict=True):
+        state[stretch.start] = forward(factor, state[stretch.start])
+        state[stretch.end] -= coupling.T @ state[stretch.start]
+    last = chain.stretches[-1].end
+    state[last] = backward(chain.border[-1], forward(chain.border[-1], state[last]))
+    for stretch, factor, coupling in zip(
+        chain.stretches[::-1], chain.border[-2::-1], chain.border_coupling[::-1], strict=True
+    ):
+        state[stretch.start] = backward(factor, state[stretch.start] - coupling @ state[stretch.end])
+    for number, plane in chain.held.items():
+        state[number] = plane.out_of(state[number])
+    for step in chain.steps[::-1]:
+        borders = np.concatenate([state[step.start], state[step.end]])
+        coupling = chain.middle_coupling[step.which]
+        state[step.inside] = backward(chain.middle[step.which], state[step.inside] - coupling @ borders)
     return state

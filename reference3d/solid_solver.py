@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from cases.scene import Scene, SceneError
 from reference3d.holds import Hold, holds, require_held, structures
-from reference3d.plane_chain import factor_bytes, factorise, solve
+from reference3d.plane_chain import HeldPlane, factor_bytes, factorise, solve
 from reference3d.solid_body import SolidBody, nodal_loads, solid_body
 from reference3d.solid_solution import SolidRod, SolidSolution
 from reference3d.solution import Cost
@@ -63,10 +63,11 @@ def solve_solid(scene: Scene, refinement: int) -> SolidSolution:
     bodies = {rod.name: solid_body(scene, rod, refinement) for rod in scene.rods}
     held = {name: holds(scene, body) for name, body in bodies.items()}
     require_held(scene, bodies, held, structures(scene))
-    for body in bodies.values():
-        _require_memory(body)
+    planes = {name: {2 * border: hold.plane for border, hold in own.items()} for name, own in held.items()}
+    for name, body in bodies.items():
+        _require_memory(body, planes[name])
     ready = time.perf_counter()
-    responses = {name: _respond(scene, body, held[name]) for name, body in bodies.items()}
+    responses = {name: _respond(scene, body, held[name], planes[name]) for name, body in bodies.items()}
     motion = _joint_motions(scene, bodies, responses)
     rods: dict[str, SolidRod] = {}
     reactions: dict[tuple[str, int], Array] = {}
@@ -108,9 +109,9 @@ def solve_solid(scene: Scene, refinement: int) -> SolidSolution:
     )
 
 
-def _require_memory(body: SolidBody) -> None:
+def _require_memory(body: SolidBody, held: Mapping[int, HeldPlane]) -> None:
     """Refuse a body whose factor would not fit into this machine's memory; SceneError with the numbers."""
-    need = factor_bytes(3 * len(body.section.nodes), len(body.kind), len(body.layers))
+    need = factor_bytes(3 * len(body.section.nodes), body.kind, held)
     present = physical_memory()
     if need > MEMORY_SHARE * present:
         found = f"{np.prod(body.shape)} unknowns that take {need / 1e9:.0f} GB where there are {present / 1e9:.0f}"
@@ -125,7 +126,9 @@ def physical_memory() -> float:
     return float(os.sysconf("SC_PHYS_PAGES")) * float(os.sysconf("SC_PAGE_SIZE"))
 
 
-def _respond(scene: Scene, body: SolidBody, held: Mapping[int, Hold]) -> _Responses:
+def _respond(
+    scene: Scene, body: SolidBody, held: Mapping[int, Hold], held_planes: Mapping[int, HeldPlane]
+) -> _Responses:
     joined = tuple(hold for hold in held.values() if hold.joint is not None)
     planes, nodes, _ = body.shape
     load = nodal_loads(body, scene.loads)
@@ -139,7 +142,7 @@ def _respond(scene: Scene, body: SolidBody, held: Mapping[int, Hold]) -> _Respon
     for column in np.flatnonzero(prescribed.any(axis=(0, 1))).tolist():
         solid, beds = body.internal_forces(prescribed[..., column].reshape(body.shape))
         force[..., column] -= (solid + beds).reshape(planes, -1)
-    chain = factorise(body.layer_matrix, body.kind, {border: hold.plane for border, hold in held.items()})
+    chain = factorise(body.layer_matrix, body.kind, held_planes)
     columns = prescribed + solve(chain, force)
     return _Responses(load, columns.reshape(*body.shape, -1), joined)
 

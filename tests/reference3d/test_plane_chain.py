@@ -5,7 +5,7 @@ import pytest
 
 from reference3d.plane_chain import HeldPlane, combinations_held, factorise, solve
 
-SIZE, KIND = 5, np.array([0, 1, 0, 2])
+SIZE, KIND = 5, np.array([0, 1, *[0] * 9, 2, *[0] * 6])
 FIXED = np.arange(SIZE) < 2
 
 
@@ -27,7 +27,7 @@ def whole(layers):
     return matrix
 
 
-@pytest.mark.parametrize("borders", [(), (0,), (4,), (0, 2, 4), (1, 2)])
+@pytest.mark.parametrize("borders", [(), (0,), (18,), (0, 7, 18), (1, 2)])
 @pytest.mark.parametrize("combined", [False, True])
 def test_held_unknowns_and_combinations_are_zero_and_all_others_in_balance(layers, whole, borders, combined):
     rng = np.random.default_rng(5)
@@ -35,7 +35,9 @@ def test_held_unknowns_and_combinations_are_zero_and_all_others_in_balance(layer
     plane = combinations_held(rows) if combined else HeldPlane(None, FIXED)
     force = rng.standard_normal((2 * len(KIND) + 1, SIZE, 3))
 
-    found = solve(factorise(lambda kind: layers[kind], KIND, dict.fromkeys(borders, plane)), force)
+    found = solve(
+        factorise(lambda kind: layers[kind], KIND, dict.fromkeys((2 * border for border in borders), plane)), force
+    )
 
     # dense, with a Lagrange multiplier for every held combination
     constraints = np.zeros((2 * len(borders), len(whole)))
@@ -44,6 +46,17 @@ def test_held_unknowns_and_combinations_are_zero_and_all_others_in_balance(layer
     full = np.block([[whole, constraints.T], [constraints, np.zeros((len(constraints),) * 2)]])
     right = np.concatenate([force.reshape(-1, 3), np.zeros((len(constraints), 3))])
     np.testing.assert_allclose(found.reshape(-1, 3), np.linalg.solve(full, right)[: len(whole)], atol=1e-11)
+
+
+def test_what_is_alike_is_eliminated_once(layers):
+    asked = []
+
+    chain = factorise(lambda kind: asked.append(kind) or layers[kind], np.zeros(37, dtype=int), {})
+
+    # 37 layers are 18 pairs and one, these 9 pairs, these 4 and one; one pair of those would not be worth it
+    assert asked == [0]
+    assert len(chain.middle) == 4
+    assert [stretch.end - stretch.start for stretch in chain.stretches] == [16, 16, 16, 16, 8, 2]
 
 
 def test_a_chain_that_is_not_held_is_refused(layers):

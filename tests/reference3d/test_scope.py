@@ -12,7 +12,6 @@ from cases.scene import (
     Circle,
     Clamp,
     Gravity,
-    Ground,
     Helix,
     Joint,
     Line,
