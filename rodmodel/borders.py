@@ -58,12 +58,18 @@ class RodBorders:
     ----------
     base : elements before any edge moves
     anchors : indices of borders that are held or follow an edge, ascending
-    edges : for each anchor the number of its edge, or -1 where it is held
+    places : where the anchors are with every edge at 0 along its pair's first rod, mm, shape (n_anchors,)
+    rates : how far they move with the edges, mm/mm, shape (n_anchors, n_edges); zero where one is held
     """
 
     base: RodMesh
     anchors: tuple[int, ...]
-    edges: tuple[int, ...]
+    places: Array
+    rates: Array
+
+    def at(self, positions: Array) -> Array:
+        """Where the anchors go with the edges at `positions`, in the anchors' own order, mm."""
+        return np.asarray(self.places + self.rates @ positions)
 
 
 def natural_mesh(scene: Scene, rod: Rod, level: int | Sequence[int], order: int | Sequence[int]) -> RodMesh:
@@ -111,7 +117,8 @@ def border_plan(
     """
     plan = {}
     for rod in scene.rods:
-        targets = _edge_stations(scene, rod, edges, positions)
+        lines = _edge_lines(scene, rod, edges)
+        targets = {number: start + rate * float(positions[number]) for number, (start, rate) in lines.items()}
         numbers = sorted(targets, key=lambda number: targets[number])
         wanted = np.array([targets[number] for number in numbers])
         mesh, held = meshes[rod.name], _held_stations(scene, rod)
@@ -124,18 +131,21 @@ def border_plan(
             key=lambda indices: float(np.abs(mesh.borders[list(indices)] - wanted).sum()),
         )
         is_held = [int(np.abs(mesh.borders - station).argmin()) for station in held]
-        anchors = {**dict.fromkeys(is_held, -1), **dict(zip(chosen, numbers, strict=True))}
-        plan[rod.name] = RodBorders(mesh, tuple(sorted(anchors)), tuple(anchors[index] for index in sorted(anchors)))
+        followed = {**dict.fromkeys(is_held), **dict(zip(chosen, numbers, strict=True))}
+        anchors = tuple(sorted(followed))
+        places, rates = mesh.borders[list(anchors)], np.zeros((len(anchors), len(edges)))
+        for index, anchor in enumerate(anchors):
+            if (number := followed[anchor]) is not None:
+                places[index], rates[index, number] = lines[number]
+        plan[rod.name] = RodBorders(mesh, anchors, places, rates)
     return plan
 
 
-def _edge_stations(scene: Scene, rod: Rod, edges: Sequence[Edge], positions: Array) -> dict[int, float]:
-    """Where the edges lie along `rod`, by edge number, for those that the rod has a part in."""
-    return {
-        number: float(station)
-        for number, edge in enumerate(edges)
-        for station in _on_rod(scene, scene.contact(edge.pair), rod, positions[number : number + 1])
-    }
+def _edge_lines(scene: Scene, rod: Rod, edges: Sequence[Edge]) -> dict[int, tuple[float, float]]:
+    """Where edges at 0 lie along `rod` and how far they go there per mm, by number, for those that it has a part in."""
+    pairs = {edge.pair: _on_rod(scene, scene.contact(edge.pair), rod, np.array([0.0, 1.0])) for edge in edges}
+    ends = {number: pairs[edge.pair] for number, edge in enumerate(edges)}
+    return {number: (float(at[0]), float(at[1] - at[0])) for number, at in ends.items() if len(at)}
 
 
 def _movable(scene: Scene, rod: Rod, borders: Array, held: Array, edges: Sequence[Edge]) -> list[int]:
@@ -151,27 +161,12 @@ def _movable(scene: Scene, rod: Rod, borders: Array, held: Array, edges: Sequenc
     ]
 
 
-def placed_meshes(
-    scene: Scene, plan: Mapping[str, RodBorders], edges: Sequence[Edge], positions: Array
-) -> dict[str, RodMesh]:
+def placed_meshes(plan: Mapping[str, RodBorders], positions: Array) -> dict[str, RodMesh]:
     """Elements of every rod with the edges at `positions` (mm along each pair's first rod)."""
-    placed = {}
-    for rod in scene.rods:
-        borders = plan[rod.name]
-        # An edge that has crossed a held border has changed places with it.
-        places = np.sort(_places(borders, _edge_stations(scene, rod, edges, positions)))
-        placed[rod.name] = stretched(borders.base, borders.anchors, places)
-    return placed
-
-
-def _places(borders: RodBorders, stations: Mapping[int, float]) -> Array:
-    """Where the anchors go, in their own order, mm."""
-    return np.array(
-        [
-            borders.base.borders[anchor] if edge < 0 else stations[edge]
-            for anchor, edge in zip(borders.anchors, borders.edges, strict=True)
-        ]
-    )
+    # An edge that has crossed a held border has changed places with it.
+    return {
+        name: stretched(borders.base, borders.anchors, np.sort(borders.at(positions))) for name, borders in plan.items()
+    }
 
 
 @dataclass(frozen=True, eq=False)
@@ -192,19 +187,11 @@ class Rates:
         return np.array([np.interp(station, self.places, each) for each in self.of_anchors])
 
 
-def edge_rates(
-    scene: Scene, plan: Mapping[str, RodBorders], edges: Sequence[Edge], positions: Array
-) -> dict[str, Rates]:
+def edge_rates(plan: Mapping[str, RodBorders], positions: Array) -> dict[str, Rates]:
     """By rod name, how the borders of `placed_meshes` move with the edges."""
     rates = {}
-    for rod in scene.rods:
-        borders = plan[rod.name]
-        stations, ahead = (_edge_stations(scene, rod, edges, at) for at in (positions, positions + 1.0))
-        places = _places(borders, stations)
-        of_anchors = np.zeros((len(edges), len(places)))
-        for index, edge in enumerate(borders.edges):
-            if edge >= 0:
-                of_anchors[edge, index] = ahead[edge] - stations[edge]
+    for name, borders in plan.items():
+        places = borders.at(positions)
         order = np.argsort(places, kind="stable")
-        rates[rod.name] = Rates(places[order], of_anchors[:, order])
+        rates[name] = Rates(places[order], borders.rates[order].T)
     return rates

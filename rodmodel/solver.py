@@ -181,6 +181,6 @@ def _search(
     plan = border_plan(scene, natural, edges, positions)
 
     def system_at(at: Array) -> tuple[ContactSystem, dict[str, Rates]]:
-        return system_on(placed_meshes(scene, plan, edges, at)), edge_rates(scene, plan, edges, at)
+        return system_on(placed_meshes(plan, at)), edge_rates(plan, at)
 
     return find_edges(scene, stretches, edges, positions, system_at)

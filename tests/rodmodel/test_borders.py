@@ -18,7 +18,7 @@ def scene() -> Scene:
 def placed(scene: Scene, edges: list[Edge], positions: list[float]) -> dict[str, np.ndarray]:
     borders = {rod.name: natural_mesh(scene, rod, 3, 4) for rod in scene.rods}
     at = np.array(positions)
-    meshes = placed_meshes(scene, border_plan(scene, borders, edges, at), edges, at)
+    meshes = placed_meshes(border_plan(scene, borders, edges, at), at)
     return {name: mesh.borders for name, mesh in meshes.items()}
 
 
@@ -67,9 +67,9 @@ def test_rates_tell_how_borders_follow_the_edges(scene: Scene, position: float) 
     natural = {rod.name: natural_mesh(loaded, rod, 3, 4) for rod in loaded.rods}
     plan = border_plan(loaded, natural, BOTH, np.array([236.0, 262.0]))
     at = np.array([position, 262.0])
-    before = placed_meshes(loaded, plan, BOTH, at)
-    rates = edge_rates(loaded, plan, BOTH, at)
+    before = placed_meshes(plan, at)
+    rates = edge_rates(plan, at)
     for number, step in enumerate(np.eye(2)):
-        for name, mesh in placed_meshes(loaded, plan, BOTH, at + step).items():
+        for name, mesh in placed_meshes(plan, at + step).items():
             moved = mesh.borders - before[name].borders
             np.testing.assert_allclose(rates[name].at(before[name].borders)[number], moved, atol=1e-12)

@@ -61,8 +61,8 @@ def test_slopes_are_those_of_pressures_with_moved_edges(change: str, ends: tuple
     plan = border_plan(scene, natural, edges, positions)
 
     def system_at(at: np.ndarray) -> tuple[ContactSystem, dict[str, Rates]]:
-        meshes = placed_meshes(scene, plan, edges, at)
-        return contact_system(scene, mirrors, meshes, store, multipliers=False), edge_rates(scene, plan, edges, at)
+        meshes = placed_meshes(plan, at)
+        return contact_system(scene, mirrors, meshes, store, multipliers=False), edge_rates(plan, at)
 
     def pressures(at: np.ndarray) -> np.ndarray:
         return edge_pressures(system_at(at)[0], moved(stretches, edges, at), edges).value

@@ -36,8 +36,8 @@ def search() -> Callable[
         plan = border_plan(scene, borders, edges, positions)
 
         def system_at(at: np.ndarray) -> tuple[ContactSystem, dict[str, Rates]]:
-            meshes = placed_meshes(scene, plan, edges, at)
-            return contact_system(scene, mirrors, meshes, store), edge_rates(scene, plan, edges, at)
+            meshes = placed_meshes(plan, at)
+            return contact_system(scene, mirrors, meshes, store), edge_rates(plan, at)
 
         return scene, find_edges(scene, stretches, edges, positions, system_at), system_at
 
