@@ -217,10 +217,17 @@ def point_parts(assembled: AssembledRod, station: Array, direction: Callable[[Fi
             along[element.order] = shape_functions(element.order, xi)
             # They vanish on the nodes only up to round-off; there, nothing need be asked of the bubbles.
             along[element.order][2:, np.abs(xi) > 1.0 - 1e-12] = 0.0
-        members = np.flatnonzero(index == number)
+        columns = np.flatnonzero(index == number)
+        members = _as_slice(columns)
         values = along[element.order][:, None, members] * directions[element.fields][None, :, members]
-        parts.append(Part(int(number), members, values))
+        parts.append(Part(int(number), columns, values))
     return parts
+
+
+def _as_slice(numbers: IntArray) -> slice | IntArray:
+    """Ascending numbers as a slice where they follow one another: views cost less than copies."""
+    start, end = int(numbers[0]), int(numbers[-1]) + 1
+    return slice(start, end) if end - start == len(numbers) else numbers
 
 
 def functionals(assembled: AssembledRod, parts: Sequence[Part], count: int) -> Functionals:
@@ -228,20 +235,20 @@ def functionals(assembled: AssembledRod, parts: Sequence[Part], count: int) -> F
     chain = assembled.chain
     nodal = np.zeros((chain.size, count))
     held = {node: np.zeros((len(each.given), count)) for node, each in assembled.holds.items()}
+    root = np.sqrt(axial_modulus(assembled.rod.material))
     bubbles = []
     for part in parts:
-        element = assembled.elements[part.element]
-        on_nodes = part.values[:2].copy()
-        inner = np.flatnonzero(part.values[2:].any(axis=(0, 1)))
-        if len(inner):
-            half = element.bubbles.half_solve(part.values[2:, :, inner].reshape(len(element.half_coupling), -1))
-            on_nodes[:, :, inner] -= (element.half_coupling.T @ half).reshape(2, element.fields.count, -1)
-            bubbles.append((part.element, part.columns[inner], half / np.sqrt(axial_modulus(assembled.rod.material))))
+        element, columns = assembled.elements[part.element], _as_slice(part.columns)
+        on_nodes, on_bubbles = part.values[:2], part.values[2:]
+        if on_bubbles.any():
+            half = element.bubbles.half_solve(on_bubbles.reshape(len(element.half_coupling), -1))
+            on_nodes = on_nodes - (element.half_coupling.T @ half).reshape(on_nodes.shape)
+            bubbles.append((part.element, part.columns, half / root))
         for side in (0, 1):
             node = part.element + side
-            nodal[chain.rows[node]][:, part.columns] += restricted(on_nodes[side], chain.ends[part.element][side])
+            nodal[chain.rows[node]][:, columns] += restricted(on_nodes[side], chain.ends[part.element][side])
             if node in held:
-                held[node][:, part.columns] += on_nodes[side, assembled.node_places(part.element, side)]
+                held[node][:, columns] += on_nodes[side, assembled.node_places(part.element, side)]
     return Functionals(chain.half_solve(nodal), held, tuple(bubbles))
 
 
