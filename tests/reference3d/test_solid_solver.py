@@ -104,6 +104,7 @@ def test_tension_and_bending_without_contraction_are_those_of_beams(section):
     assert stress[2, 0] == pytest.approx(500.0 / area - 3000.0 * y / moment, rel=2e-3)  # pointwise
 
 
+@pytest.mark.slow
 def test_a_circular_cantilever_bends_and_twists_as_beam_theory_says():
     loads = (SectionForce("rod", 200.0, (0.0, -100.0, 0.0)), SectionMoment("rod", 200.0, (4000.0, 0.0, 0.0)))
 
@@ -224,6 +225,7 @@ def test_a_moved_clamp_carries_a_free_rod_along_without_stress():
     np.testing.assert_allclose(solution.stress("rod", np.array([[1.0], [2.0], [50.0]])), 0.0, atol=1e-6)
 
 
+@pytest.mark.slow
 def test_a_mean_support_carries_a_beam_at_both_ends_as_pin_and_roller():
     length, force = 200.0, 100.0
     supports = (
@@ -324,6 +326,7 @@ def bed_scene(length, load, line=None):
     return one_rod(line, SQUARE, (load,), CORK, (keep,), beds=(bed,)), decay, modulus
 
 
+@pytest.mark.slow
 def test_a_long_bar_on_a_bed_sinks_as_hetenyi_says_and_the_bed_carries_the_load():
     """M. Hetenyi, Beams on Elastic Foundation, 1946, article 18."""
     length, force = 1000.0, 100.0
