@@ -32,7 +32,7 @@ IntArray = NDArray[np.int64]
 # block pivoting steps without progress before single pivoting takes over (Judice and Pires 1994)
 PATIENCE = 5
 # how often springs are moved at most, and the change of the forces, of their sum, at which they stay
-MOST_MOVES, STAYING = 20, 1e-6
+MOST_MOVES, STAYING = 50, 1e-6
 
 
 @dataclass(frozen=True)
@@ -220,7 +220,8 @@ class RigidContact:
     ----------
     force : F, N, shape (n,)
     given_way : by how much springs are still pressed in, mm, shape (n,)
-    outcome, steps : as of `Complementarity`, over all solutions
+    outcome : 'converged', 'cycling' or 'refused: ...'
+    steps : active sets tried in all solutions
     """
 
     force: Array
@@ -249,10 +250,13 @@ def without_penetration(
         moved = np.where(rigid, soft * before, 0.0)
         answer = solve_complementarity(matrix, offset - moved, before > 0.0)
         steps += answer.steps
-        if answer.outcome != "converged":
+        changed = float(np.abs(answer.force - before)[rigid].sum())
+        if answer.outcome != "converged" or changed <= STAYING * before.sum():
             break
-        if np.abs(answer.force - before)[rigid].sum() <= STAYING * before.sum():
-            break
+    else:
+        share = changed / float(before.sum())
+        outcome = f"refused: the penalty is too soft, forces still change by {share:.1e} after {MOST_MOVES} corrections"
+        return RigidContact(answer.force, soft * answer.force - moved, outcome, steps)
     return RigidContact(answer.force, soft * answer.force - moved, answer.outcome, steps)
 
 
