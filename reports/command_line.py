@@ -1,4 +1,4 @@
-"""The command `rodcheck`: list, solve, compare, report, verify, performance and schema.
+"""The command `rodcheck`: list, solve, compare, report, verify, performance, stability and schema.
 
 Heavy imports wait until a command needs them. Bad input is answered by one sentence on standard error and
 exit code 2; a verdict other than 'pass', a solver that did not converge or a case that failed by exit code 1. The
@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 
     from cases.case import Case
     from reports.runner import CaseRun, Failure
+    from reports.stability.registry import Stability
     from reports.verification.check import Outcome
 
 BAD_INPUT = 2
@@ -157,7 +158,7 @@ def compare(*cases: str) -> int:
 def report(*cases: str, output: Path = Path("report")) -> int:
     """Solve cases both ways and write one self-contained page, with the results as JSON beside it.
 
-    With the whole library come the verification page and the performance page.
+    With the whole library come the pages of verification, performance and stability.
 
     Parameters
     ----------
@@ -175,9 +176,11 @@ def report(*cases: str, output: Path = Path("report")) -> int:
     outcomes = None if cases else _verification_outcomes()
     verification = None if outcomes is None else _write_verification(outcomes, output)
     performance = None if cases else _write_performance(output)
-    pages = [page.name for page in (verification, performance) if page is not None]
+    sweeps = None if cases else _stability()
+    stability = None if sweeps is None else _write_stability(sweeps, output)
+    pages = [page.name for page in (verification, performance, stability) if page is not None]
     print(_written(lambda: write_report(runs, output, pages)))
-    incomplete = any(isinstance(run, Failure) for run in runs) or (not cases and len(pages) < 2)
+    incomplete = any(isinstance(run, Failure) for run in runs) or (not cases and len(pages) < 3)
     return NOT_PASSED if incomplete else 0
 
 
@@ -216,6 +219,26 @@ def performance(*, output: Path = Path("report")) -> int:
         return NOT_PASSED
     print(page)
     return 0
+
+
+@app.command
+def stability(*, output: Path = Path("report")) -> int:
+    """Drive methods to where they fail, the rod model beside plain alternatives; print and write what was seen.
+
+    Parameters
+    ----------
+    output : folder for stability.html
+    """
+    _require_folder(output)
+    found = _stability()
+    if found is None:
+        return NOT_PASSED
+    from reports.stability.page import all_hold, summary
+
+    page = _write_stability(found, output)
+    print("\n".join(summary(found)))
+    print(page)
+    return 0 if all_hold(found) else NOT_PASSED
 
 
 @schema_app.command(name="result")
@@ -288,6 +311,24 @@ def _write_performance(output: Path, *, aloud: bool = False) -> Path | None:
     if aloud:
         print("\n".join(summary(found.series, found.breakdown, found.study)))
     return page
+
+
+def _stability() -> Stability | None:
+    """What all sweeps found; None, with the reason on standard error, if one failed to run."""
+    from reports.processes import ProcessFailed
+    from reports.stability.registry import carry_out
+
+    try:
+        return carry_out()
+    except ProcessFailed as error:
+        print(f"rodcheck: stability: {error}", file=sys.stderr)
+        return None
+
+
+def _write_stability(found: Stability, output: Path) -> Path:
+    from reports.stability.page import write_stability
+
+    return _written(lambda: write_stability(found, output))
 
 
 def _load_all(names: Sequence[str]) -> list[Case]:

@@ -59,6 +59,10 @@ PAGES = {
         "Performance",
         "what the rod model costs, against the number of elements, part by part, and by level and order.",
     ),
+    "stability.html": (
+        "Stability",
+        "every method driven to where it fails, the rod model and plain alternatives side by side.",
+    ),
 }
 
 

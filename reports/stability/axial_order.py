@@ -79,11 +79,11 @@ def claim(found: Found) -> str:
     top = condition[OURS.name].x[-1]
     one, four = error[ONE.name], error[FOUR.name]
     return (
-        f"At p = {top:.0f} the functions of the rod model have the condition {number(condition[OURS.name].y[-1])} (their "
-        f"slopes are orthonormal but for the linear one), Lagrange's on equidistant points "
-        f"{number(condition[EQUIDISTANT.name].y[-1])}, monomials {number(condition[MONOMIALS.name].y[-1])}. With them the error of "
-        f"a quarter ring falls without end: from {share(one.y[0])} at p = {one.x[0]:.0f} to {share(one.y[-1])} at "
-        f"p = {one.x[-1]:.0f} on one element, {share(four.y[0])} to {share(four.y[-1])} on four."
+        f"At p = {top:.0f} the functions of the rod model have the condition {number(condition[OURS.name].y[-1])} "
+        "(their slopes are orthonormal but for the linear one), Lagrange's on equidistant points "
+        f"{number(condition[EQUIDISTANT.name].y[-1])}, monomials {number(condition[MONOMIALS.name].y[-1])}. With them "
+        f"the error of a quarter ring falls without end: from {share(one.y[0])} at p = {one.x[0]:.0f} to "
+        f"{share(one.y[-1])} at p = {one.x[-1]:.0f} on one element, {share(four.y[0])} to {share(four.y[-1])} on four."
     )
 
 
@@ -92,8 +92,8 @@ def own_limit(found: Found) -> str:
     one = found["error"][ONE.name]
     return (
         "At a clamp the section cannot contract, which dies away within about a section's height; that layer, not the "
-        f"ring, is what high orders are busy with on one long element ({share(one.at(10.0))} at p = 10). Short elements at "
-        "clamps are cheaper than orders. No order loses digits."
+        f"ring, is what high orders are busy with on one long element ({share(one.at(10.0))} at p = 10). Short "
+        "elements at clamps are cheaper than orders. No order loses digits."
     )
 
 
@@ -107,8 +107,8 @@ def holds(found: Found) -> bool:
 
 SWEEP = Sweep(
     "Order",
-    "The order along the rod from 2 to 20: condition of ∫ N′ N′ᵀ without the rigid motion, and the deflection of a quarter "
-    "ring (R / h = 10, h2) against that at p = 24.",
+    "The order along the rod from 2 to 20: condition of ∫ N′ N′ᵀ without the rigid motion, and the deflection of a "
+    "quarter ring (R / h = 10, h2) against that at p = 24.",
     ORDERS,
     (MONOMIALS, EQUIDISTANT, OURS, ONE, FOUR),
     (

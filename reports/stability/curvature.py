@@ -89,8 +89,8 @@ def claim(found: Found) -> str:
     )
     return (
         f"At R / h = {tightest:g}, where the inner face has a radius of {number((tightest - 0.5) * HEIGHT)} mm, the "
-        f"thin rod is off by {thin}, Winkler's and Bach's plane sections by {winkler}; {levels}. The thin rod's stress is "
-        f"within 1 % only from R / h = {number(_good_from(found))} on."
+        f"thin rod is off by {thin}, Winkler's and Bach's plane sections by {winkler}; {levels}. The thin rod's stress "
+        f"is within 1 % only from R / h = {number(_good_from(found))} on."
     )
 
 

@@ -14,8 +14,13 @@ from reports.stability.sweep import Curve, Picture, Sweep
 HEIGHT = 340
 # Zero has no place on a logarithmic axis and is drawn here.
 ZERO = 1e-17
-_OURS = (("#0072B2", "circle"), ("#007A5A", "square"), ("#5B3A8E", "diamond"), ("#1F2933", "triangle-up"))
-_OURS += (("#3A9BD9", "triangle-down"),)
+_OURS = (
+    ("#0072B2", "circle"),
+    ("#007A5A", "square"),
+    ("#5B3A8E", "diamond"),
+    ("#1F2933", "triangle-up"),
+    ("#3A9BD9", "triangle-down"),
+)
 _PLAIN = (("#D55E00", "circle"), ("#B0307A", "square"), ("#9A6A00", "diamond"), ("#A3271B", "triangle-up"))
 
 

@@ -25,7 +25,8 @@ FIXED, PLAIN, MOVED = (
 )
 # Drawn with the border so far beyond the edge, mm
 DRAWN = 4.0
-# What is compared lies so far from the corner, where the pressure is singular, and from the edge, where it is steep; mm.
+# What is compared lies so far (mm) from the corner, where the pressure is singular, and from the edge, where it is
+# steep.
 CLEAR = 0.8
 
 
@@ -84,12 +85,12 @@ def claim(found: Found) -> str:
     """Ringing."""
     ringing, force = found["ringing"], found["force"]
     return (
-        f"With the border on the edge the pressure is smooth, and on fixed elements as well if that is where their border "
-        f"is ({share(ringing[FIXED.name].y[0])} apart). With the border beyond the edge the same polynomials must be pressed "
-        "in one part of the element and free in the other: the pressure at single points zigzags, by up to "
-        f"{share(ringing[FIXED.name].largest)} of its largest value with multipliers and "
-        f"{share(ringing[PLAIN.name].largest)} with plain springs of {number(PENALTY)} N/mm³. The resultant hides it: it is "
-        f"off by no more than {share(force[FIXED.name].largest)}."
+        "With the border on the edge the pressure is smooth, and on fixed elements as well if that is where their "
+        f"border is ({share(ringing[FIXED.name].y[0])} apart). With the border beyond the edge the same polynomials "
+        "must be pressed in one part of the element and free in the other: the pressure at single points zigzags, by "
+        f"up to {share(ringing[FIXED.name].largest)} of its largest value with multipliers and "
+        f"{share(ringing[PLAIN.name].largest)} with plain springs of {number(PENALTY)} N/mm³. The resultant hides it: "
+        f"it is off by no more than {share(force[FIXED.name].largest)}."
     )
 
 
@@ -97,9 +98,9 @@ def own_limit(found: Found) -> str:
     """Where borders cannot move."""
     ringing = found["ringing"][FIXED.name]
     return (
-        f"The pressure at single points is meaningless wherever borders cannot follow the edges ({share(ringing.y[1])} off at "
-        f"{ringing.x[1]:g} mm already): on crossing rods and where the search does not settle. The stretches then state how "
-        "far the edge may be; trust resultants there, not pressures."
+        f"The pressure at single points is meaningless wherever borders cannot follow the edges ({share(ringing.y[1])} "
+        f"off at {ringing.x[1]:g} mm already): on crossing rods and where the search does not settle. The stretches "
+        "then state how far the edge may be; trust resultants there, not pressures."
     )
 
 
@@ -111,14 +112,16 @@ def holds(found: Found) -> bool:
 
 SWEEP = Sweep(
     "Edge inside an element",
-    "The two cantilevers (E2 = 50 GPa) on fixed elements: the border lies up to 40 mm beyond the edge of contact instead "
-    "of on it (p = 8).",
+    "The two cantilevers (E2 = 50 GPa) on fixed elements: the border lies up to 40 mm beyond the edge of contact "
+    "instead of on it (p = 8).",
     BEYOND,
     (FIXED, PLAIN, MOVED),
     (
         Picture("profile", "Pressure, middle of the width", "X, mm", "MPa", log_x=False, log_y=False),
-        Picture("ringing", "Pressure off the smooth one", "border beyond the edge, mm", "part of the largest"),
-        Picture("force", "Contact force", "border beyond the edge, mm", "relative difference"),
+        Picture(
+            "ringing", "Pressure off the smooth one", "border beyond the edge, mm (0 at 0.1)", "part of the largest"
+        ),
+        Picture("force", "Contact force", "border beyond the edge, mm (0 at 0.1)", "relative difference"),
     ),
     measure,
     claim,

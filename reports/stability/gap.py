@@ -9,8 +9,8 @@ from reports.stability.sweep import Found, Method, Picture, Sweep, curve
 from reports.stability.two_bars import RATIO, answer, beam_theory, two_bars
 from reports.stability.wording import number, share
 
-GAPS = (-20.0, -15.0, -10.0, -7.0, -5.0, -3.0, -2.0, -1.0, -0.5, -0.2, 0.0, 0.2, 0.5, 0.8, 1.0, 2.0, 4.0, 6.0, 8.0, 9.0)
-GAPS += (10.0, 10.5, 11.0, 12.0, 15.0)
+GAPS: tuple[float, ...] = (-20.0, -15.0, -10.0, -7.0, -5.0, -3.0, -2.0, -1.0, -0.5, -0.2, 0.0, 0.2, 0.5, 0.8, 1.0)
+GAPS += (2.0, 4.0, 6.0, 8.0, 9.0, 10.0, 10.5, 11.0, 12.0, 15.0)
 SOFT = 1e4
 BEAMS = Method("beams touching at a corner", ours=False)
 PLAIN = Method("plain penalty, 10⁴ N/mm³", ours=False)
@@ -56,12 +56,12 @@ def claim(found: Found) -> str:
         if not math.isnan(one) and not math.isnan(other)
     )
     return (
-        f"From an interference of {-ours.x[0]:g} mm to a gap of {ours.x[-1]:g} mm the contact force falls steadily from "
-        f"{ours.y[0]:.0f} N to exactly 0, which it is from a gap between {touching:g} and {open_:g} mm on; "
+        f"From an interference of {-ours.x[0]:g} mm to a gap of {ours.x[-1]:g} mm the contact force falls steadily "
+        f"from {ours.y[0]:.0f} N to exactly 0, which it is from a gap between {touching:g} and {open_:g} mm on; "
         f"{sum(found['converged'][OURS.name].y):.0f} of {len(ours.x)} solves converge, in {min(solutions.y):.0f} to "
-        f"{solutions.largest:.0f} contact solutions, while the stretch in contact goes from the end of the lower bar to "
-        f"that of the upper. Where corners touch, beam theory is within {share(_off_beams(found))}. A plain penalty has "
-        f"its edge up to {number(apart)} mm elsewhere."
+        f"{solutions.largest:.0f} contact solutions, while the stretch in contact goes from the end of the lower bar "
+        f"to that of the upper. Where corners touch, beam theory is within {share(_off_beams(found))}. A plain penalty "
+        f"has its edge up to {number(apart)} mm elsewhere."
     )
 
 
@@ -77,10 +77,9 @@ def own_limit(found: Found) -> str:
     solutions = found["solutions"][OURS.name]
     most = max(zip(solutions.y, solutions.x, strict=True))
     return (
-        f"The search takes most contact solutions, {most[0]:.0f}, at a gap of {most[1]:g} mm, where a stretch is about to "
-        "shrink to a corner. Displacements count as small: an interference of "
-        f"{-solutions.x[0]:g} mm, more than the bars are thick, is solved without a word, though it makes no sense. "
-        "Nothing detects that."
+        f"The search takes most contact solutions, {most[0]:.0f}, at a gap of {most[1]:g} mm, where a stretch is about "
+        f"to shrink to a corner. Displacements count as small: an interference of {-solutions.x[0]:g} mm, more than "
+        "the bars are thick, is solved without a word, though it makes no sense. Nothing detects that."
     )
 
 

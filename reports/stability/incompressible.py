@@ -131,7 +131,8 @@ def claim(found: Found) -> str:
         f"beam's deflection and h1 with the full law {share(bent[FULL.name].y[-1])}; h1 with its reduced law has "
         f"{levels.removeprefix('h1 ')}, 27-node hexahedra {share(bent[QUADRATIC.name].y[-1])}. The bonded cube is "
         "harder: against a finer mesh of 27-node hexahedra (8 x 8) the 8-node ones are "
-        f"{pressed[PLAIN.name].y[-1]:.3g} times as stiff, the 27-node ones (4 x 4) {pressed[QUADRATIC.name].y[-1]:.2f}; {blocks}."
+        f"{pressed[PLAIN.name].y[-1]:.3g} times as stiff, the 27-node ones (4 x 4) "
+        f"{pressed[QUADRATIC.name].y[-1]:.2f}; {blocks}."
     )
 
 
@@ -141,8 +142,8 @@ def own_limit(found: Found) -> str:
     low, high = RODS[1].name, RODS[3].name
     return (
         f"h2 is {share(1.0 - bent[low].y[-1] / bent[high].y[-1])} stiffer than h6 in bending and "
-        f"{share(pressed[low].y[-1] / pressed[high].y[-1] - 1.0)} in the cube, where h6 is the softest of all, "
-        "which is to say the best. Nothing in a solution says that its level is too low: compare with the level two higher."
+        f"{share(pressed[low].y[-1] / pressed[high].y[-1] - 1.0)} in the cube, where h6 is the softest of all, which "
+        "is to say the best. Nothing in a solution says that its level is too low: compare with the level two higher."
     )
 
 

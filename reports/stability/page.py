@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from typing import Any
 
@@ -51,18 +52,39 @@ def render(stability: Stability) -> str:
     )
 
 
+def summary(stability: Stability) -> list[str]:
+    """What `rodcheck stability` prints."""
+    carried_out = [(sweep, stability.found[sweep.name]) for sweep in SWEEPS if sweep.name in stability.found]
+    return [
+        f"{sweep.name}: {'holds' if sweep.holds(found) else 'does not hold'}. {sweep.claim(found)}"
+        for sweep, found in carried_out
+    ]
+
+
+def all_hold(stability: Stability) -> bool:
+    """Whether the numbers bear out every claim."""
+    return all(sweep.holds(stability.found[sweep.name]) for sweep in SWEEPS if sweep.name in stability.found)
+
+
 def _section(sweep: Sweep, found: Found, anchor: str) -> dict[str, Any]:
     return {
         "anchor": anchor,
         "name": sweep.name,
-        "driven": sweep.driven,
-        "claim": sweep.claim(found),
-        "own_limit": sweep.own_limit(found),
+        "driven": _unbroken(sweep.driven),
+        "claim": _unbroken(sweep.claim(found)),
+        "own_limit": _unbroken(sweep.own_limit(found)),
         "holds": sweep.holds(found),
         "pictures": [
             _picture(sweep, picture, found, f"{anchor}-{number_}") for number_, picture in enumerate(sweep.pictures, 1)
         ],
     }
+
+
+def _unbroken(text: str) -> str:
+    """A sentence whose formulas and numbers with their units stay on one line."""
+    for joint in (" / ", " = ", " x "):
+        text = text.replace(joint, joint.replace(" ", "\u00a0"))
+    return re.sub(r"(?<=[0-9⁰¹²³⁴⁵⁶⁷⁸⁹]) (?=(%|mm|N|MPa)\b|%)", "\u00a0", text)
 
 
 def _picture(sweep: Sweep, picture: Picture, found: Found, anchor: str) -> dict[str, Any]:
@@ -80,7 +102,7 @@ def _picture(sweep: Sweep, picture: Picture, found: Found, anchor: str) -> dict[
         "title": picture.title,
         "x": picture.x,
         "y": picture.y,
-        "keys": keys,
+        "key": keys,
         "methods": list(curves),
         "rows": rows,
     }

@@ -65,12 +65,11 @@ def claim(found: Found) -> str:
     back, plain = found["return"], found["return"][PLAIN.name]
     same = "to the last bit" if back[OURS.name].largest == 0.0 else f"within {share(back[OURS.name].largest)}"
     return (
-        "The rod model solves every load from nothing, so that returning to a load returns to its answer "
-        f"{same}. Without a gap the zone does not depend on the size of the load, and the force is "
-        f"proportional to it within {share(_proportional(found))}, and zero while the load pulls the bars apart. A solver "
-        "that corrects its contact points once an increment is "
-        f"off by up to {share(plain.largest)} on the way back, and its force can even pull "
-        f"({number(min(found['path'][PLAIN.name].y))} N)."
+        f"The rod model solves every load from nothing, so that returning to a load returns to its answer {same}. "
+        "Without a gap the zone does not depend on the size of the load, and the force is proportional to it within "
+        f"{share(_proportional(found))}, and zero while the load pulls the bars apart. A solver that corrects its "
+        f"contact points once an increment is off by up to {share(plain.largest)} on the way back, and its force can "
+        f"even pull ({number(min(found['path'][PLAIN.name].y))} N)."
     )
 
 

@@ -10,7 +10,7 @@ import rodmodel
 from cases.scene import CentreLine, Clamp, Material, Rectangle, Rod, Scene
 from reports.stability import plain_beams, plain_rods
 from reports.stability.sweep import Curve, Found, Method, Picture, Sweep, curve
-from reports.stability.wording import share
+from reports.stability.wording import number, share
 from reports.verification.bending import cowper_coefficient
 from reports.verification.scenes import ROD, STEEL, WITHOUT_CONTRACTION, arc, end_force, straight
 from rodmodel.section import STRAIGHT, Fields, section_stiffness
@@ -136,12 +136,12 @@ def claim(found: Found) -> str:
     )
     second, third = (share(_last(rings[each.name])) for each in RINGS[:2])
     higher = share(max(_last(rings[each.name]) for each in RINGS[2:]))
-    slender = f"{beams[TWO_NODES.name].x[-1]:.0f}"
+    slender = number(beams[TWO_NODES.name].x[-1])
     return (
-        f"At L / h = {slender} the two-node beam has lost {two_nodes} of its deflection and the rod model at order 1 "
-        f"{linear}; h1 with the full law loses {full} at any slenderness (Poisson locking). h1, with its reduced law, is "
-        f"off by {one}, h2 by {two}, h5 by {five}. On the arc order 2 locks as well ({second} at R / h = {slender}), "
-        f"order 3 is off by {third}; orders 4 and 6 stay within {higher} of Castigliano's theorem."
+        f"At L / h = {slender} the two-node beam has lost {two_nodes} of its deflection (the rod model at order 1: "
+        f"{linear}); h1 with the full law loses {full} at any slenderness (Poisson locking). h1 with its reduced law "
+        f"is off by {one}, h2 by {two}, h5 by {five}. On the arc order 2 locks as well ({second} at R / h = "
+        f"{slender}), order 3 is off by {third}; orders 4 and 6 stay within {higher} of Castigliano's theorem."
     )
 
 
@@ -150,13 +150,14 @@ def own_limit(found: Found) -> str:
     lost, told = found["elements"][MEASURED.name], found["elements"][TOLD.name]
     clamp = found["straight"][LEVELS[-1].name]
     return (
-        "Order 2 on slender arcs is no good. A long element at a clamp keeps the section from contracting over all its "
-        f"length: {share(_last(clamp))} too stiff with four equal ones, at any slenderness. Elements of 0.2 h there "
-        f"cure that, but digits run out: they make the arc of R / h = {clamp.x[-1]:.0f} wrong by "
+        "Order 2 on slender arcs is no good. A long element at a clamp keeps the section from contracting over all "
+        f"its length: {share(_last(clamp))} too stiff with four equal ones, at any slenderness. Elements of 0.2 h "
+        f"there cure that, but digits run out: they make the arc of R / h = {number(clamp.x[-1])} wrong by "
         f"{share(_last(found['arc'][SHORT_ENDS.name]))}, and the rod of L / h = {LONG:.0f} is off by "
-        f"{share(lost.y[-1])} on {lost.x[-1]:.0f} elements, as short elements are stiffer than the rod by about the cube "
-        "of the ratio of lengths. The solution can tell: put through the stiffness and back (rodmodel.soundness), its "
-        f"displacements are off by {share(told.y[-1])}. From {share(WORTH_A_WARNING)} on that is worth a warning."
+        f"{share(lost.y[-1])} on {number(lost.x[-1])} elements, as short elements are stiffer than the rod by about "
+        "the cube of the ratio of lengths. The solution can tell: put through the stiffness and back "
+        f"(rodmodel.soundness), its displacements are off by {share(told.y[-1])}. From {share(WORTH_A_WARNING)} on "
+        "that is worth a warning."
     )
 
 
@@ -176,7 +177,7 @@ def holds(found: Found) -> bool:
 SWEEP = Sweep(
     "Slenderness",
     "A cantilever and a quarter ring of square section, clamped at one end, force across the other: length or radius "
-    "over height from 2 to 10 000, nu = 0.3, against Timoshenko's beam and Castigliano's theorem, which leave out the "
+    "over height from 2 to 10 000, nu = 0.3, against Timoshenko's beam and Castigliano's theorem, which leave out the "
     "clamp (about 0.1 h / L).",
     SLENDERNESSES,
     (TWO_NODES, LINEAR, FULL, *LEVELS, RING_TWO_NODES, *RINGS, SHORT_ENDS, MEASURED, TOLD),

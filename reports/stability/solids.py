@@ -80,7 +80,7 @@ def face_weights(body: Solid, height: float) -> Array:
     """Nodal forces of a unit pressure on the top face Z = height, mm^2, shape (n,)."""
     facets = body.basis.mesh.facets_satisfying(lambda x: np.abs(x[2] - height) < 1e-9)
     face = body.basis.boundary(facets)
-    values = np.stack([np.asarray(function[0].value) for function in face.basis])
+    values = np.stack([np.asarray(function[0]) for function in face.basis])
     weights = np.zeros(body.basis.N)
     np.add.at(weights, face.element_dofs, (values * face.dx).sum(axis=-1))
     return weights

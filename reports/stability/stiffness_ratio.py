@@ -57,10 +57,11 @@ def claim(found: Found) -> str:
         f"From E2 / E1 = {number(force.x[0])}, where the upper bar hangs over the end of the lower one, to "
         f"{number(force.x[-1])}, where its own end just touches, the contact force falls from {force.y[0]:.0f} N to "
         f"{number(force.y[-1])} N; {sum(found['converged'][OURS.name].y):.0f} of {len(force.x)} solves converge, in "
-        f"{min(solutions.y):.0f} to {solutions.largest:.0f} contact solutions. Where beams touch at a corner, beam theory "
-        f"differs by at most {share(_off_beams(found))} (it leaves out shear). A plain penalty that suits one ratio does "
-        f"not suit another: it lets the bars penetrate by up to {number(found['penetration'][PLAIN.name].largest)} mm, "
-        f"multipliers by {number(found['penetration'][OURS.name].largest)} mm."
+        f"{min(solutions.y):.0f} to {solutions.largest:.0f} contact solutions. Where beams touch at a corner, beam "
+        f"theory differs by at most {share(_off_beams(found))} (it leaves out shear). A plain penalty that suits one "
+        "ratio does not suit another: it lets the bars penetrate by up to "
+        f"{number(found['penetration'][PLAIN.name].largest)} mm, multipliers by "
+        f"{number(found['penetration'][OURS.name].largest)} mm."
     )
 
 
@@ -68,9 +69,9 @@ def own_limit(found: Found) -> str:
     """Corners."""
     corners = len(found["force"][BEAMS.name].sizes)
     return (
-        f"At {corners} of the {len(found['force'][OURS.name].x)} ratios the bars touch at a corner. Contact there is a point "
-        "with a singular pressure: what is said of its stretch is the shortest length that is looked for, 0.2 mm here, and "
-        "its pressure means nothing. The force does."
+        f"At {corners} of the {len(found['force'][OURS.name].x)} ratios the bars touch at a corner. Contact there is a "
+        "point with a singular pressure: what is said of its stretch is the shortest length that is looked for, 0.2 "
+        "mm here, and its pressure means nothing. The force holds."
     )
 
 

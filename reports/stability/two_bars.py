@@ -1,4 +1,4 @@
-"""The paper's two cantilevers, one lying on the other, with what the sweeps drive; and beam theory's answer for them."""
+"""The paper's two cantilevers, one lying on the other, with what sweeps drive, and beam theory's answer for them."""
 
 from __future__ import annotations
 
@@ -11,11 +11,12 @@ from numpy.typing import NDArray
 
 import rodmodel
 from cases.loader import load_case
-from cases.scene import Rectangle, Scene
+from cases.scene import Material, Rectangle, Scene, SectionForce
 from rodmodel.assembly import ElementStore
 from rodmodel.borders import natural_mesh
-from rodmodel.contact import unilateral_contact
+from rodmodel.contact import ContactProblem, unilateral_contact
 from rodmodel.mesh import RodMesh
+from rodmodel.section import axial_modulus
 from rodmodel.symmetry import scene_mirrors
 from rodmodel.system import ContactSystem, contact_system
 
@@ -46,12 +47,16 @@ def two_bars(ratio: float = RATIO, gap: float = 0.0, penalty: float | None = PEN
     """
     scene = _case()
     lower, upper = scene.rods
-    young = ratio * lower.material.young_modulus
+    load = scene.loads[0]
+    # as the case file has them
+    assert isinstance(upper.material, Material)
+    assert isinstance(load, SectionForce)
+    young = ratio * axial_modulus(lower.material)
     upper = replace(upper, material=replace(upper.material, young_modulus=young))
     return replace(
         scene,
         rods=(lower, upper),
-        loads=(replace(scene.loads[0], force=(0.0, -force, 0.0)),),
+        loads=(replace(load, force=(0.0, -force, 0.0)),),
         contacts=(replace(scene.contacts[0], gap=gap, penalty=penalty),),
     )
 
@@ -81,17 +86,22 @@ class Answer:
 def answer(scene: Scene, *, multipliers: bool = True) -> Answer:
     """Solve and say what came of it."""
     found = rodmodel.solve(scene, LEVEL, ORDER, multipliers=multipliers)
-    problem, force = found.system.problem, found.force
+    edge = found.stretches[-1].end if found.stretches else math.nan
+    return said(found.outcome, found.system.problem, found.force, edge, found.contact_solutions)
+
+
+def said(outcome: str, problem: ContactProblem, force: Array, edge: float, solutions: int) -> Answer:
+    """What forces at the points of a contact problem come to."""
     joined = force > 0.0
     matrix = problem.compliance[np.ix_(joined, joined)] + np.diag(1.0 / problem.spring[joined])
     gap = problem.gap + problem.compliance @ force
     return Answer(
-        found.outcome,
+        outcome,
         float(force.sum()),
         max(0.0, -float(gap.min())),
-        found.stretches[-1].end if found.stretches else math.nan,
+        edge,
         float(np.linalg.cond(matrix)) if joined.any() else math.nan,
-        found.contact_solutions,
+        solutions,
         unilateral_contact(problem).active_sets,
     )
 
@@ -117,7 +127,7 @@ def beam_theory(ratio: float, gap: float, force: float = FORCE) -> float:
     scene = _case()
     section = scene.rods[0].section
     assert isinstance(section, Rectangle)
-    lower = scene.rods[0].material.young_modulus * section.width * section.height**3 / 12.0
+    lower = axial_modulus(scene.rods[0].material) * section.width * section.height**3 / 12.0
     upper = ratio * lower
 
     def bend(at: float, by: float, stiffness: float) -> float:

@@ -23,7 +23,9 @@ def number(value: float, digits: int = 2) -> str:
     if value == 0.0:
         return "0"
     rounded = float(f"{value:.{digits - 1}e}")
-    if 1e-3 <= abs(rounded) < 1e5:
+    if 1e4 <= abs(rounded) < 1e6:
+        return f"{rounded:,.0f}".replace(",", "\u202f").replace("-", "−")
+    if 1e-3 <= abs(rounded) < 1e6:
         return f"{rounded:.6g}".replace("-", "−")
     mantissa, exponent = f"{rounded:.{digits - 1}e}".split("e")
     power = f"10{str(int(exponent)).translate(_SUPERSCRIPTS)}"
