@@ -31,9 +31,11 @@ CELLS, FEWEST_CELLS = 3.0, 2
 # around a ring, and along the walls of a box: blocks at least, and largest length over the wall's thickness
 RING_BLOCKS, MOST_SLENDER = 8, 4.0
 WALL_BLOCKS = 2
-# blocks of a polygon, over its area by half of its border (the wall's thickness where there is one): size that gmsh is
-# asked for, which it halves once it has made them
-POLYGON_BLOCK = 12.0
+# sizes of the blocks of a polygon, over its area by half of its border (the wall's thickness where there is one): what
+# gmsh is asked for, which it halves once it has made them. The next is tried where a corner's angle has a smaller sine
+# than this.
+POLYGON_BLOCKS = (20.0, 12.0, 8.0, 5.0)
+LEAST_SINE = 0.12
 # nodes closer than this, over the size of the section, are one
 SAME = 1e-9
 
@@ -253,7 +255,23 @@ def _bilinear(corners: Array, refinement: int) -> Array:
 
 @lru_cache(maxsize=32)
 def _polygon_blocks(section: Polygon) -> Array:
-    """Corners of quadrilaterals that fill a polygon, anticlockwise, shape (n, 4, 2)."""
+    """Corners of quadrilaterals that fill a polygon, anticlockwise, shape (n, 4, 2): as few as have good angles."""
+    best, found = -1.0, np.empty((0, 4, 2))
+    for block in POLYGON_BLOCKS:
+        blocks = _quadrilaterals(section, block)
+        edges = np.roll(blocks, -1, axis=1) - blocks
+        edges /= np.linalg.norm(edges, axis=2, keepdims=True)
+        following = np.roll(edges, -1, axis=1)
+        sine = float((edges[..., 0] * following[..., 1] - edges[..., 1] * following[..., 0]).min())
+        if sine > best:
+            best, found = sine, blocks
+        if sine > LEAST_SINE:
+            break
+    return found
+
+
+def _quadrilaterals(section: Polygon, block: float) -> Array:
+    """Quadrilaterals by gmsh, of a size of about `block` in the unit of `POLYGON_BLOCKS`."""
     import gmsh  # its wheel needs X libraries, so only making a mesh asks for it
 
     loops = [np.array(loop, dtype=float) for loop in (section.outer, *section.holes)]
@@ -263,7 +281,7 @@ def _polygon_blocks(section: Polygon) -> Array:
         enclosed = 0.5 * abs(float(np.sum(loop[:, 0] * following[:, 1] - loop[:, 1] * following[:, 0])))
         area += enclosed if number == 0 else -enclosed
         around += float(np.linalg.norm(following - loop, axis=1).sum())
-    size = POLYGON_BLOCK * 2.0 * area / around
+    size = block * 2.0 * area / around
     started_here = not gmsh.isInitialized()
     if started_here:
         gmsh.initialize(interruptible=False)
