@@ -317,7 +317,7 @@ def _add_ground(
 ) -> None:
     """A strip at the magnified gap from the undeformed face; under it, for a bed, springs where it is not lifted off.
 
-    What is farther than three section heights is drawn there.
+    What is farther than three section heights is left out, or drawn there if all of it is.
     """
     for pair in scene.contacts:
         if isinstance(pair.second, RodFace) or pair.gap == "drawn":
@@ -341,8 +341,9 @@ def _add_ground(
         ground = still + height * normal
         points = np.hstack([ground - across, ground + across]).T
         count = len(station)
-        first = np.arange(count - 1)
-        quads = np.stack([np.full(count - 1, 4), first, first + 1, count + first + 1, count + first], axis=1)
+        near = height < 3.0 * side
+        first = np.flatnonzero((near[:-1] & near[1:]) | ~near.any())
+        quads = np.stack([np.full(len(first), 4), first, first + 1, count + first + 1, count + first], axis=1)
         plotter.add_mesh(pyvista.PolyData(points, quads.ravel()), color=HOLD, ambient=0.4, diffuse=0.6)
 
 
