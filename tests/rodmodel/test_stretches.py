@@ -1,6 +1,7 @@
 """Stretches in contact and their ends."""
 
 import numpy as np
+import pytest
 
 from cases.loader import load_case
 from rodmodel.assembly import ElementStore
@@ -38,3 +39,14 @@ def test_ripples_inside_an_element_are_not_stretches() -> None:
     closed_runs = np.count_nonzero(np.diff(np.concatenate([[0], closed.astype(int)])) == 1)
     assert closed_runs > 1  # the mesh does show openings
     assert len(stretches_in_contact(system, forces)) == 1
+
+
+def test_the_lowest_level_shows_where_contact_ends() -> None:
+    """Within a contact point's distance of 4 mm, by how the gap opens beyond; h5 on moved borders says 221.68 mm."""
+    scene = load_case("two-cantilevers-e50-g0").scene
+    meshes = {rod.name: natural_mesh(scene, rod, 1, 6) for rod in scene.rods}
+    system = contact_system(scene, scene_mirrors(scene), meshes, ElementStore())
+    (stretch,) = stretches_in_contact(system, unilateral_contact(system.problem, settled=False))
+    assert stretch.start == 200.0
+    assert stretch.end == pytest.approx(221.68, abs=1.2)
+    assert abs(stretch.end - 221.68) < stretch.slack
