@@ -34,17 +34,13 @@ class Look:
 
 
 def looks(sweep: Sweep, methods: Iterable[str]) -> dict[str, Look]:
-    """Look of each method in one picture, by name."""
-    ours, plain, chosen = 0, 0, {}
-    for name in methods:
-        if sweep.is_ours(name):
-            colour, symbol = _OURS[ours % len(_OURS)]
-            ours += 1
-        else:
-            colour, symbol = _PLAIN[plain % len(_PLAIN)]
-            plain += 1
-        chosen[name] = Look(colour, symbol, sweep.is_ours(name))
-    return chosen
+    """Look of each method by name, the same in all pictures of a sweep."""
+    chosen = {}
+    for kind, palette in ((True, _OURS), (False, _PLAIN)):
+        names = [method.name for method in sweep.methods if method.ours == kind]
+        for number, name in enumerate(names):
+            chosen[name] = Look(*palette[number % len(palette)], kind)
+    return {name: chosen[name] for name in methods}
 
 
 def figure(sweep: Sweep, picture: Picture, curves: Mapping[str, Curve]) -> go.Figure:

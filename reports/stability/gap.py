@@ -6,7 +6,7 @@ import math
 from itertools import pairwise
 
 from reports.stability.sweep import Found, Method, Picture, Sweep, curve
-from reports.stability.two_bars import RATIO, answer, beam_theory, two_bars
+from reports.stability.two_bars import RATIO, Answer, answer, beam_theory, two_bars
 from reports.stability.wording import number, share
 
 GAPS: tuple[float, ...] = (-20.0, -15.0, -10.0, -7.0, -5.0, -3.0, -2.0, -1.0, -0.5, -0.2, 0.0, 0.2, 0.5, 0.8, 1.0)
@@ -27,6 +27,12 @@ def measure(values: tuple[float, ...]) -> Found:
             PLAIN.name: curve(values, (each.force for each in plain)),
             OURS.name: curve(values, (each.force for each in ours)),
         },
+        "apart": {
+            BEAMS.name: curve(
+                values, (_apart(beam_theory(RATIO, value), each) for value, each in zip(values, ours, strict=True))
+            ),
+            PLAIN.name: curve(values, (_apart(one.force, each) for one, each in zip(plain, ours, strict=True))),
+        },
         "edge": {
             PLAIN.name: curve(values, (each.edge for each in plain)),
             OURS.name: curve(values, (each.edge for each in ours)),
@@ -37,6 +43,11 @@ def measure(values: tuple[float, ...]) -> Found:
         },
         "converged": {OURS.name: curve(values, (float(each.outcome == "converged") for each in ours))},
     }
+
+
+def _apart(force: float, ours: Answer) -> float:
+    """Relative difference of a contact force from ours; nan where there is none."""
+    return abs(force / ours.force - 1.0) if ours.force > 0.0 else math.nan
 
 
 def _ends(found: Found) -> tuple[float, float]:
@@ -77,9 +88,9 @@ def own_limit(found: Found) -> str:
     solutions = found["solutions"][OURS.name]
     most = max(zip(solutions.y, solutions.x, strict=True))
     return (
-        f"The search takes most contact solutions, {most[0]:.0f}, at a gap of {most[1]:g} mm, where a stretch is about "
-        f"to shrink to a corner. Displacements count as small: an interference of {-solutions.x[0]:g} mm, more than "
-        "the bars are thick, is solved without a word, though it makes no sense. Nothing detects that."
+        f"The search takes most contact solutions, {most[0]:.0f}, at a gap of {most[1]:g} mm. Displacements count as "
+        f"small: an interference of {-solutions.x[0]:g} mm, more than the bars are thick, is solved without a word, "
+        "though it makes no sense. Nothing detects that."
     )
 
 
@@ -97,6 +108,7 @@ SWEEP = Sweep(
     (BEAMS, PLAIN, OURS),
     (
         Picture("force", "Contact force", "gap, mm", "N", log_x=False, log_y=False),
+        Picture("apart", "How far the others are from multipliers", "gap, mm", "relative difference", log_x=False),
         Picture("edge", "Farther edge of contact", "gap, mm", "X, mm", log_x=False, log_y=False),
         Picture("solutions", "Contact solutions", "gap, mm", "solutions", log_x=False, log_y=False),
     ),

@@ -201,8 +201,8 @@ def own_limit(found: Found) -> str:
         "The 3D reference is of this kind (27 nodes, nodes on faces). On the paper's two bars it makes nodes meet "
         f"nodes (element borders in the zone are {number(apart)} mm apart); where bars are meshed differently, single "
         f"pressures can be off as here ({share(max(stress[SOLIDS[27].name].y[1:]))}), resultants are not. The rod "
-        f"model's pressures are not exact either: multipliers stop at {number(stress[RODS.name].largest)}, the more so "
-        "the more elements."
+        "model's pressures are not exact either: multipliers stop while they are still "
+        f"{number(stress[RODS.name].largest)} off, the more so the more elements."
     )
 
 

@@ -74,16 +74,18 @@ def claim(found: Found) -> str:
     force, edge, sets = found["force"], found["edge"], found["sets"]
     plain, ours = force[PLAIN.name], force[OURS.name]
     refused = sum(found["refused"][PLAIN.name].y)
+    spread = ours.largest - min(ours.y)
+    changed = f"changes by {share(spread)}" if spread else "is the same to the last bit"
     return (
         f"Plain springs of {number(plain.x[0])} N/mm³ give a contact force {share(plain.y[0])} off and an edge "
         f"{number(edge[PLAIN.name].y[0])} mm off ({refused:.0f} of the softest are refused for that); the edge needs "
         "stiffer springs than the force. Multipliers on the same springs take the penetration away: their force is "
-        f"within {share(force[SAME.name].largest)} at any penalty, at the price of up to {sets[SAME.name].largest:.0f} "
-        "active sets where springs are soft. What the solver gives by default changes by "
-        f"{share(ours.largest - min(ours.y))} over all {math.log10(ours.x[-1] / ours.x[0]):.0f} decades, with at most "
-        f"{sets[OURS.name].largest:.0f} active sets. The condition of plain springs' matrix grows with the penalty, to "
-        f"{number(found['condition'][PLAIN.name].largest)}; the default's stays below "
-        f"{number(1.01 * found['condition'][OURS.name].largest)}."
+        f"within {share(force[SAME.name].largest)} at any penalty, with up to {sets[SAME.name].largest:.0f} active "
+        f"sets (plain springs: {sets[PLAIN.name].largest:.0f}). What the solver gives by default {changed} over all "
+        f"{math.log10(ours.x[-1] / ours.x[0]):.0f} decades, with up to {sets[OURS.name].largest:.0f} active sets. The "
+        "condition of plain springs' matrix grows with the penalty, to "
+        f"{number(found['condition'][PLAIN.name].largest)}; the default's is at most "
+        f"{number(found['condition'][OURS.name].largest)}."
     )
 
 

@@ -1,6 +1,6 @@
-"""Plain two-node beams, straight and on an arc, with full integration: the textbook's elements that lock.
+"""Plain two-node beams: straight and on an arc with full integration, which lock, and Euler's and Bernoulli's.
 
-T. J. R. Hughes, The Finite Element Method, 1987, section 5.4; on arcs, with membrane strain u' + w / R.
+T. J. R. Hughes, The Finite Element Method, 1987, sections 1.16 and 5.4; on arcs, with membrane strain u' + w / R.
 """
 
 from __future__ import annotations
@@ -44,3 +44,29 @@ def end_deflection(
     load = np.zeros(len(whole))
     load[-2] = 1.0
     return float(np.linalg.solve(whole[3:, 3:], load[3:])[-2])
+
+
+def cubic_end_deflection(borders: Array, bending: float) -> float:
+    """Deflection of a cantilever's end per unit force there by cubic elements, mm/N: exact but for round-off.
+
+    Unknowns at a node: deflection in mm and slope, as textbooks have them.
+
+    Parameters
+    ----------
+    borders : of the elements, mm
+    bending : E I
+    """
+    whole = np.zeros((2 * len(borders), 2 * len(borders)))
+    for element, length in enumerate(np.diff(borders)):
+        deflections, mixed, slopes = 12.0 / length**3, 6.0 / length**2, 2.0 / length
+        whole[2 * element : 2 * element + 4, 2 * element : 2 * element + 4] += bending * np.array(
+            [
+                [deflections, mixed, -deflections, mixed],
+                [mixed, 2.0 * slopes, -mixed, slopes],
+                [-deflections, -mixed, deflections, -mixed],
+                [mixed, slopes, -mixed, 2.0 * slopes],
+            ]
+        )
+    load = np.zeros(len(whole))
+    load[-2] = 1.0
+    return float(np.linalg.solve(whole[2:, 2:], load[2:])[-2])

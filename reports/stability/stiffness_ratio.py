@@ -25,6 +25,15 @@ def measure(values: tuple[float, ...]) -> Found:
             PLAIN.name: curve(values, (each.force for each in plain)),
             OURS.name: curve(values, (each.force for each in ours)),
         },
+        "apart": {
+            BEAMS.name: curve(
+                values,
+                (abs(beam_theory(value, 0.0) / each.force - 1.0) for value, each in zip(values, ours, strict=True)),
+            ),
+            PLAIN.name: curve(
+                values, (abs(one.force / each.force - 1.0) for one, each in zip(plain, ours, strict=True))
+            ),
+        },
         "solutions": {
             PLAIN.name: curve(values, (each.solutions for each in plain)),
             OURS.name: curve(values, (each.solutions for each in ours)),
@@ -91,6 +100,7 @@ SWEEP = Sweep(
     (BEAMS, PLAIN, OURS),
     (
         Picture("force", "Contact force", "E2 / E1", "N"),
+        Picture("apart", "How far the others are from multipliers", "E2 / E1", "relative difference"),
         Picture("solutions", "Contact solutions", "E2 / E1", "solutions", log_y=False),
         Picture("penetration", "Penetration", "E2 / E1", "largest, mm"),
     ),

@@ -114,6 +114,9 @@ class TestPlainAlternatives:
         expected = 0.25 * math.pi * radius * (radius**2 / bending + 1.0 / stretching + 1.0 / shearing)
         assert deflection == pytest.approx(expected, rel=1e-3)
 
+    def test_cubic_beams_are_exact_on_equal_elements(self) -> None:
+        assert plain_beams.cubic_end_deflection(np.linspace(0.0, 20.0, 5), 1e6) == pytest.approx(20.0**3 / 3e6)
+
     def test_full_law_is_the_law_from_the_second_level_on(self) -> None:
         fields, section, material = Fields(2), Rectangle(3.0, 2.0), Material(100.0, 0.3)
 
