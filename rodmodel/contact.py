@@ -20,10 +20,14 @@ IntArray = NDArray[np.int64]
 
 # Steps of the multipliers, and the energy left in the springs, as a share of the rods', at which they have settled.
 MOST_STEPS, SETTLED = 100, 1e-11
-# How often all points that are wrong about a set may change sides at once.
-MOST_EXCHANGES = 10
+# They end, too, where little is left and a step leaves most of it: the rods cannot close that.
+LITTLE, MOST = 1e-6, 0.9
+# Energy that may be left where the steps have run out.
+ACCEPTED = 1e-5
+# How often all points that are wrong about a set may change sides at once, and how often that may leave no fewer.
+MOST_EXCHANGES, PATIENCE = 20, 3
 # How far loose rods move on their springs, as a multiple of what they deform.
-SOFT = 1e3
+SOFT = 1e2
 # Forces, gaps and unbalanced loads this small against the largest may be round-off.
 ROUND_OFF = 1e-9
 # Share of a load that contact may leave unbalanced on a loose rod: in the end, and where it only tells about where.
@@ -114,19 +118,24 @@ class ActiveSet:
 
     def settled_forces(self) -> tuple[Array, Array]:
         """Forces and motions of the problem with the multipliers that take the springs' penetration away."""
-        multiplier = np.zeros_like(self._problem.gap)
+        multiplier, left = np.zeros_like(self._problem.gap), np.inf
         for _ in range(MOST_STEPS):
             force, motion = self.forces(multiplier)
             before, multiplier = multiplier, np.where(self._problem.rigid, force, 0.0)
-            if _are_settled(self._problem, multiplier, before):
+            left_before, left = left, _energy_left(self._problem, multiplier, before)
+            if _is_settled(left, left_before):
                 break
         return force, motion
 
 
-def _are_settled(problem: ContactProblem, multiplier: Array, before: Array) -> bool:
-    """Whether the springs hold next to nothing of what the rods do."""
+def _is_settled(left: float, left_before: float) -> bool:
+    return left <= SETTLED or (left <= LITTLE and left > MOST * left_before)
+
+
+def _energy_left(problem: ContactProblem, multiplier: Array, before: Array) -> float:
+    """What the springs still hold, as a share of what the rods and they do."""
     left = float(np.sum((multiplier - before) ** 2 / problem.spring))
-    return left <= SETTLED * (float(multiplier @ problem.compliance @ multiplier) + left)
+    return left / ((float(multiplier @ problem.compliance @ multiplier) + left) or 1.0)
 
 
 def unilateral_contact(problem: ContactProblem, settled: bool = True) -> ContactForces:
@@ -144,33 +153,41 @@ def unilateral_contact(problem: ContactProblem, settled: bool = True) -> Contact
     matrix = problem.compliance + problem.motion @ flexibility @ problem.motion.T
     matrix[np.diag_indices_from(matrix)] += 1.0 / problem.spring
     pushing = PushingForces(matrix)
-    size, multiplier = np.abs(problem.motion_load).max(initial=0.0), force
+    multiplier, left = force, np.inf
+    outcome, size, balance = "stagnated: the multipliers did not settle", 0.0, 0.0
     for _ in range(MOST_STEPS):
         hung = problem.gap + problem.motion @ (motion + flexibility @ problem.motion_load)
         found = pushing.closing(hung - multiplier / problem.spring)
         if found is None:
-            return ContactForces(force, motion, "stagnated: no set of contact points serves", pushing.active_sets)
+            outcome = "stagnated: no set of contact points serves"
+            break
         force = found
         unbalanced = problem.motion.T @ force + problem.motion_load
         motion = motion + flexibility @ unbalanced
         before, multiplier = multiplier, np.where(problem.rigid, force, 0.0)
+        size = max(np.abs(problem.motion_load).max(initial=0.0), (np.abs(problem.motion.T) @ force).max(initial=0.0))
         balance = float(np.abs(unbalanced).max(initial=0.0))
-        if settled and _are_settled(problem, multiplier, before) and balance <= BALANCED * size:
+        left_before, left = left, _energy_left(problem, multiplier, before)
+        if balance <= (BALANCED if settled else ROUGHLY_BALANCED) * size and (
+            not settled or _is_settled(left, left_before)
+        ):
+            outcome = "converged"
             break
-        if not settled and balance <= ROUGHLY_BALANCED * size:
-            break
-    return ContactForces(force, motion, "converged", pushing.active_sets)
+    # What all these steps leave to do may still be little.
+    if outcome != "converged" and left <= ACCEPTED and balance <= 10.0 * ROUND_OFF * size:
+        outcome = "converged"
+    return ContactForces(force, motion, outcome, pushing.active_sets)
 
 
 def _soft_springs(problem: ContactProblem) -> Array:
     """Flexibility of the springs that loose rods hang on, shape (n_motions, n_motions).
 
-    They move the contact points `SOFT` times as far as the rods' own compliance does, on average.
+    They move the contact points some `SOFT` times as far as the rods' own compliance does.
     """
     count = len(problem.motion_load)
     if count == 0 or not len(problem.gap):
         return np.zeros((count, count))
-    own = float(np.mean(np.diagonal(problem.compliance) + 1.0 / problem.spring))
+    own = float(np.median(np.diagonal(problem.compliance) + 1.0 / problem.spring))
     # Motions that open no gap have no say.
     return np.asarray(SOFT * own * len(problem.gap) * np.linalg.pinv(problem.motion.T @ problem.motion, hermitian=True))
 
@@ -179,7 +196,7 @@ class PushingForces:
     """Minimises 1/2 f^T A f + gap^T f over f >= 0 for one gap after another: f >= 0, gap + A f >= 0, one of them zero.
 
     From the set of the gap before all points that are wrong about it change sides at once (primal-dual active set), as
-    long as that leaves fewer and fewer of them. It may cycle: more points than an element has freedoms make sets that
+    long as that leaves fewer of them. It may cycle: more points than an element has freedoms make sets that
     differ by nothing but round-off. Then Lawson and Hanson's non-negative least squares find the set, which end after
     finitely many.
 
@@ -197,16 +214,18 @@ class PushingForces:
 
     def closing(self, gap: Array) -> Array | None:
         """The forces for a gap, shape (n,); None where no set of points serves."""
+        if self.active_sets == 0:
+            self._choose(gap < 0.0)
         force, wrong = self._forces(gap)
-        for _ in range(MOST_EXCHANGES if self.active_sets else 0):
-            if not len(wrong):
+        fewest, patience = len(wrong), PATIENCE
+        for _ in range(MOST_EXCHANGES):
+            if not len(wrong) or not patience:
                 break
-            before = len(wrong)
             self._exchange(wrong)
             force, wrong = self._forces(gap)
-            if len(wrong) >= before:
-                break
-        if self.active_sets == 0 or len(wrong):
+            patience = PATIENCE if len(wrong) < fewest else patience - 1
+            fewest = min(fewest, len(wrong))
+        if len(wrong):
             self._choose(self._least_squares(gap) > 0.0)
             force, wrong = self._forces(gap)
         # Least squares lose digits to the factor's condition: one point after another changes sides until all serve.

@@ -22,6 +22,8 @@ Array = NDArray[np.float64]
 PARALLEL = 1.0 - 1e-9
 # Steps of Newton's method for the point opposite, on a curved rod; and what it leaves, as a part of the rod's length.
 MOST_STEPS, FOUND = 30, 1e-12
+# Contact points with less than this part of the largest share of the face have none.
+NO_SHARE = 1e-12
 # Points along a curved rod among which it begins.
 SAMPLES = 200
 

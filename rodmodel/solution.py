@@ -15,7 +15,7 @@ from rodmodel.axial import shape_function_slopes, shape_functions
 from rodmodel.beds import BedForces, bed_forces
 from rodmodel.centre_line import by_turning, centre_points, frames, global_points, turning_at
 from rodmodel.mesh import SAME_BORDER
-from rodmodel.pairing import facing_points
+from rodmodel.pairing import NO_SHARE, facing_points
 from rodmodel.profile import ContactProfile, pressure_profile
 from rodmodel.resultants import rigid_motions
 from rodmodel.section import (
@@ -204,14 +204,18 @@ class Solution:
         problem = self.system.problem
         gap = problem.gap[points] + problem.compliance[points] @ self.force + problem.motion[points] @ self.free_motion
         station, across = grid.flat()
+        shared = grid.weight.ravel() > NO_SHARE * grid.weight.max()
         if grid.symmetric:
-            beyond = across > across.min()
+            beyond = across > grid.across.min(axis=2, keepdims=True).repeat(grid.across.shape[2], axis=2).ravel()
             station, across = (
                 np.concatenate([station, station[beyond]]),
                 np.concatenate([across, -across[beyond]]),
             )
             force = np.where(beyond, 0.5 * force, force)
             force, gap = np.concatenate([force, force[beyond]]), np.concatenate([gap, gap[beyond]])
+            shared = np.concatenate([shared, shared[beyond]])
+        # At the corners of what the faces share, points may have no share of it.
+        station, across, force, gap = station[shared], across[shared], force[shared], gap[shared]
         facing = facing_points(self.scene, contact, station, across)
         position = global_points(self.scene.rod(contact.first.rod), facing.first)
         return ContactPoints(position, facing.normal, gap, force)

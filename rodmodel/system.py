@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from cases.scene import ContactPair, Ground, Rod, RodFace, Scene, given_gap
+from cases.scene import ContactPair, Ground, Material, Rod, RodFace, Scene, given_gap
 from rodmodel.assembly import (
     AssembledRod,
     ElementStore,
@@ -32,6 +32,7 @@ from rodmodel.joints import Loose, Skeleton, skeleton
 from rodmodel.loads import load_parts
 from rodmodel.mesh import SAME_BORDER, RodMesh
 from rodmodel.pairing import (
+    NO_SHARE,
     ContactGrid,
     Facing,
     contact_grid,
@@ -43,10 +44,10 @@ from rodmodel.pairing import (
 )
 from rodmodel.section import Fields, section_values
 
-# By how much a penalty that nobody gave is stiffer than the rods, point by point.
-STIFFER = 1e3
-# Share of a face, as a part of the largest, that a contact point without one gets.
-NO_SHARE = 1e-9
+# By how much the penalty that suits the rods is stiffer than their sections, squeezed across.
+STIFFER = 1e2
+# Springs of multipliers are at least this part as stiff in a short interval as in the longest.
+SHORT = 0.3
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -156,10 +157,9 @@ def contact_system(
     rigid = np.full(ends[-1], multipliers)
     for pair in scene.contacts:
         part = points[pair.name]
+        spring[part] = _springs(scene, pair, grids[pair.name], multipliers)
         weight = grids[pair.name].weight.ravel()
-        # Where the shared range ends in a corner, points have no share; they must not be without a spring.
-        weight = np.maximum(weight, NO_SHARE * weight.max())
-        spring[part] = weight * _stiffness(pair, weight, np.diagonal(matrix)[part])
+        rigid[part] &= weight > NO_SHARE * weight.max()
         if isinstance(pair.second, Ground) and pair.second.modulus is not None:
             rigid[part] = False
     problem = ContactProblem(matrix, gap, spring, np.ascontiguousarray(free[:, :-1].T), free[:, -1], rigid)
@@ -174,16 +174,35 @@ def initial_gap(scene: Scene, pair: ContactPair, grid: ContactGrid) -> Array:
     return given_gap(pair.gap, station)
 
 
-def _stiffness(pair: ContactPair, weight: Array, compliance: Array) -> float:
-    """Pressure per penetration, N/mm^3: the bed's, the given penalty, or one that suits the rods.
+def _springs(scene: Scene, pair: ContactPair, grid: ContactGrid, multipliers: bool) -> Array:
+    """c_n w of the contact points, N/mm, shape (n_points,)."""
+    weight = grid.weight.copy()
+    if multipliers:
+        # What multipliers find does not depend on the springs; those of short intervals may as well be as stiff.
+        largest = weight.max(axis=(1, 2), keepdims=True)
+        weight *= np.maximum(1.0, SHORT * largest.max() / np.maximum(largest, NO_SHARE * largest.max()))
+    # Where what the faces share ends in a corner, points have no share; they must not be without a spring.
+    return np.asarray(np.maximum(weight, NO_SHARE * weight.max()).ravel() * _stiffness(scene, pair, multipliers))
 
-    weight, compliance : share of the face, mm^2, and displacement under a unit force, mm/N, of every point, shape (n,)
+
+def _stiffness(scene: Scene, pair: ContactPair, multipliers: bool) -> float:
+    """Pressure per penetration, N/mm^3: the bed's, or the penalty.
+
+    Multipliers get the penalty that suits the rods, whatever is given: what they find does not depend on it, but a
+    soft one takes many steps and a stiff one leaves equations that round-off spoils.
     """
     if isinstance(pair.second, Ground) and pair.second.modulus is not None:
         return pair.second.modulus
-    if pair.penalty is not None:
+    if pair.penalty is not None and not multipliers:
         return pair.penalty
-    return STIFFER / float(np.mean(weight * compliance))
+    squeezed = 0.0
+    for face in pair.faces:
+        rod = scene.rod(face.rod)
+        axes = face_axes(rod, face.face)
+        moduli = rod.material
+        across = moduli.young_modulus if isinstance(moduli, Material) else moduli.young_moduli[axes.axis]
+        squeezed += 2.0 * axes.height / across
+    return STIFFER / squeezed
 
 
 def _grid(

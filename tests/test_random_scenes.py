@@ -1,0 +1,61 @@
+"""Random scenes of rods in contact: every one ends, in complementarity and equilibrium, or is refused with a reason.
+
+The outcomes are counted and printed (pytest -rP shows them). More scenes than the suite has time for:
+`RANDOM_SCENES=2000 pytest tests/test_random_scenes.py -rP`.
+"""
+
+from __future__ import annotations
+
+import os
+from collections import Counter
+
+import numpy as np
+import pytest
+
+import rodmodel
+from cases.scene import Ground, SceneError
+from reports.quantities import evaluate
+from tests.random_scenes import random_scene
+
+SCENES = int(os.environ.get("RANDOM_SCENES", "24"))
+# Penetration that a solution may leave, as a share of the largest displacement: a corner's, where pressure is singular.
+PENETRATION = 2e-3
+# Unbalanced force, as a share of the largest.
+UNBALANCED = 1e-8
+
+
+def checked_outcome(seed: int) -> str:
+    """How the solution of a scene ended, once what it claims is seen to be so."""
+    try:
+        solution = rodmodel.solve(random_scene(seed), level=2, order=4)
+    except SceneError:
+        return "refused as a scene"
+    if solution.outcome != "converged":
+        kind, _, reason = solution.outcome.partition(": ")
+        assert kind in ("refused", "stagnated"), seed
+        assert reason, seed
+        return kind
+    scene = solution.scene
+    stations = {rod.name: np.linspace(0.0, rod.length, 9) for rod in scene.rods}
+    moved = max(float(np.abs(solution.displacement(name, at)).max()) for name, at in stations.items())
+    largest = 0.0
+    for pair in scene.contacts:
+        points = solution.contact_points(pair.name)
+        largest = max(largest, float(points.force.sum()))
+        assert (points.force >= 0.0).all(), (seed, pair.name)
+        if not isinstance(pair.second, Ground) or pair.second.modulus is None:
+            assert points.gap.min(initial=0.0) >= -PENETRATION * moved - 1e-6, (seed, pair.name)
+    quantities = evaluate(solution)
+    # The residual is relative to loads and reactions; forces of an interference fit may be much larger.
+    reactions = max((float(np.abs(each[:3]).max()) for each in quantities.reactions.values()), default=0.0)
+    assert quantities.equilibrium_residual <= UNBALANCED * max(1.0, largest / max(reactions, 1e-12)), seed
+    return "converged, edges settled" if solution.edge_uncertainty <= 0.02 else "converged, edges on a fixed mesh"
+
+
+@pytest.mark.slow
+def test_every_random_scene_ends_as_it_says() -> None:
+    outcomes = Counter(checked_outcome(seed) for seed in range(SCENES))
+
+    print(f"{SCENES} scenes:", dict(outcomes))  # noqa: T201 - the count is part of what the test tells
+    assert sum(outcomes.values()) == SCENES
+    assert outcomes["stagnated"] <= 0.02 * SCENES
