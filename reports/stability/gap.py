@@ -71,8 +71,8 @@ def claim(found: Found) -> str:
         f"from {ours.y[0]:.0f} N to exactly 0, which it is from a gap between {touching:g} and {open_:g} mm on; "
         f"{sum(found['converged'][OURS.name].y):.0f} of {len(ours.x)} solves converge, in {min(solutions.y):.0f} to "
         f"{solutions.largest:.0f} contact solutions, while the stretch in contact goes from the end of the lower bar "
-        f"to that of the upper. Where corners touch, beam theory is within {share(_off_beams(found))}. A plain penalty "
-        f"has its edge up to {number(apart)} mm elsewhere."
+        f"to that of the upper. Where corners touch, beam theory is within {share(_off_beams(found))} of the largest "
+        f"force. A plain penalty has its edge up to {number(apart)} mm elsewhere."
     )
 
 

@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 
 from cases.scene import Material, Rectangle
-from reports import command_line
+from reports import command_line, site
 from reports.processes import ProcessFailed
 from reports.stability import plain_beams, plain_rods, registry
 from reports.stability.figures import ZERO, figure, looks
@@ -43,6 +43,8 @@ QUICK: dict[str, tuple[float, ...]] = {
     "Edge inside an element": (0.0, 1.0, 4.0, 17.0),
     "Contact patch test": (2.0, 3.0),
 }
+SLOW = ("Border search", "Contact patch test", "Incompressibility")
+ALL = [pytest.param(each, id=each.name, marks=pytest.mark.slow if each.name in SLOW else ()) for each in SWEEPS]
 
 
 @pytest.fixture(scope="module")
@@ -57,12 +59,12 @@ def found_of(sweep: Sweep, quick: dict[str, Found]) -> Found:
     return quick[sweep.name]
 
 
-@pytest.mark.parametrize("sweep", SWEEPS, ids=[sweep.name for sweep in SWEEPS])
+@pytest.mark.parametrize("sweep", ALL)
 def test_numbers_bear_the_claim_out(sweep: Sweep, quick: dict[str, Found]) -> None:
     assert sweep.holds(found_of(sweep, quick))
 
 
-@pytest.mark.parametrize("sweep", SWEEPS, ids=[sweep.name for sweep in SWEEPS])
+@pytest.mark.parametrize("sweep", ALL)
 def test_pictures_show_declared_methods_and_sentences_are_whole(sweep: Sweep, quick: dict[str, Found]) -> None:
     found = found_of(sweep, quick)
 
@@ -262,6 +264,10 @@ class TestPage:
         assert not all_hold(broken)
         assert render(broken).count("does not hold") > render(few).count("does not hold")
         assert summary(broken)[0].startswith("Order: does not hold.")
+
+    def test_report_links_to_the_page_where_there_is_one(self) -> None:
+        assert f'href="{FILE_NAME}"' in site.render([], {}, [FILE_NAME])
+        assert FILE_NAME not in site.render([], {})
 
     def test_page_is_written_whole(self, few: Stability, tmp_path: Path) -> None:
         path = write_stability(few, tmp_path)

@@ -59,6 +59,15 @@ def test_usual_rods_lose_next_to_nothing() -> None:
     assert told(cantilever(straight(300.0), (0.0, 3.0, 15.0, 100.0, 200.0, 300.0))) < 1e-10
 
 
+def test_rods_on_supports_of_any_kind_and_twisted_ones_tell_as_well() -> None:
+    line = rm.Line((0.0, 0.0, 0.0), (300.0, 0.0, 0.0), (0.0, 1.0, 0.0), twist=1.0)
+    rod = rm.Rod("bar", line, rm.Rectangle(SIDE, 0.5 * SIDE), rm.Material(200e3, 0.3), equal(300.0, 6))
+    held = (rm.Support("bar", 0.0, ("x", "y", "s", "turn s"), "mean"), rm.Support("bar", 300.0, ("x", "y"), "section"))
+    load = rm.SectionForce("bar", 150.0, (0.0, 1.0, 0.5))
+
+    assert 0.0 < told(rm.solve(rm.Scene("bar", (rod,), held, (load,), ()), 3, 5)) < 1e-10
+
+
 def test_rod_at_rest_has_lost_nothing() -> None:
     rod = rm.Rod("bar", straight(100.0), rm.Rectangle(SIDE, SIDE), MATERIAL, (0.0, 100.0))
     assert told(rm.solve(rm.Scene("bar", (rod,), (rm.Clamp("bar", "start"),), (), ()), 2, 4)) == 0.0
