@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from pathlib import Path
 from typing import Any
@@ -109,7 +110,7 @@ def _picture(sweep: Sweep, picture: Picture, found: Found, anchor: str) -> dict[
 
 
 def _cell(value: float) -> str:
-    return "" if value != value else number(value)
+    return "" if math.isnan(value) else number(value, 3)
 
 
 def _swatch(look: Look) -> Markup:
