@@ -108,6 +108,17 @@ def _on_rod(scene: Scene, pair: ContactPair, rod: Rod, station: Array) -> Array:
     return np.empty(0)
 
 
+def split_at(
+    scene: Scene, meshes: Mapping[str, RodMesh], places: Sequence[tuple[ContactPair, float]]
+) -> dict[str, RodMesh]:
+    """The meshes with more borders: on both rods of each pair at a place along the first one (mm)."""
+    result = {}
+    for rod in scene.rods:
+        stations = [_on_rod(scene, pair, rod, np.array([place])) for pair, place in places]
+        result[rod.name] = split(meshes[rod.name], np.concatenate([np.empty(0), *stations]))
+    return result
+
+
 def border_plan(
     scene: Scene, meshes: Mapping[str, RodMesh], edges: Sequence[Edge], positions: Array
 ) -> dict[str, RodBorders]:

@@ -19,7 +19,7 @@ BoolArray = NDArray[np.bool_]
 IntArray = NDArray[np.int64]
 
 # Steps of the multipliers, and the energy left in the springs, as a share of the rods', at which they have settled.
-MOST_STEPS, SETTLED = 100, 1e-11
+MOST_STEPS, SETTLED = 100, 1e-13
 # They end, too, where little is left and a step leaves most of it: the rods cannot close that.
 LITTLE, MOST = 1e-6, 0.9
 # Energy that may be left where the steps have run out.

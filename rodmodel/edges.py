@@ -25,7 +25,7 @@ BoolArray = NDArray[np.bool_]
 
 # An edge counts as found when the next step would move it by less than this, mm.
 EDGE_TOLERANCE = 0.01
-MOST_STEPS = 12
+MOST_STEPS = 8
 # Longest step as a part of the zone.
 LONGEST_STEP = 0.1
 # Steps up to this part of a stretch's length are short, and do what they should if pressures fall to this part.

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from cases.scene import Ground, Rod, Scene
 from rodmodel.assembly import ElementStore, stored_energy
-from rodmodel.borders import Edge, Rates, border_plan, edge_rates, natural_mesh, placed_meshes
+from rodmodel.borders import Edge, Rates, border_plan, edge_rates, natural_mesh, placed_meshes, split_at
 from rodmodel.contact import ContactForces, unilateral_contact
 from rodmodel.edges import EDGE_TOLERANCE, EdgeSearch, find_edges
 from rodmodel.joints import Loose
@@ -33,6 +33,8 @@ SystemOn = Callable[[dict[str, RodMesh]], ContactSystem]
 PENALTY_SHARE = 1e-3
 # How often the search may start anew because stretches appeared, merged or vanished.
 MOST_TOPOLOGIES = 3
+# Solutions where it does not settle: on the natural borders, then twice with more of them.
+UNMOVED = 3
 
 
 def solve(scene: Scene, level: Grades = 5, order: Grades = 6, multipliers: bool = True) -> Solution:
@@ -138,8 +140,8 @@ def moved_contact(
     """Find the stretches in contact, move borders onto their edges, and solve on those.
 
     Where stretches appear, merge or vanish on the way, the search starts anew from what the last solution shows. Where
-    that goes on, or the search does not settle, the borders stay where they are: the stretches say how far the edges
-    may be from them.
+    that goes on, or the search does not settle, the natural borders stay, with more where contact seems to end: the
+    stretches say how far the edges may be from there.
 
     system : on the natural borders, at any level: its solution tells where to begin
     """
@@ -164,8 +166,18 @@ def moved_contact(
             system, solutions = system_on(natural), solutions + 1
             forces = unilateral_contact(system.problem)
             stretches, stagnated = stretches_in_contact(system, forces), False
-        if stagnated or forces.outcome != "converged" or not moving_edges(scene, stretches)[0]:
+        if forces.outcome != "converged" or not moving_edges(scene, stretches)[0]:
+            return MovedContact(forces.outcome, solutions, stretches, system, forces)
+        if stagnated:
             break
+    meshes = natural
+    for _ in range(UNMOVED):
+        system = system_on(meshes)
+        forces = unilateral_contact(system.problem)
+        stretches, solutions = stretches_in_contact(system, forces), solutions + 1
+        edges, positions = moving_edges(scene, stretches)
+        places = [(scene.contact(edge.pair), float(at)) for edge, at in zip(edges, positions, strict=True)]
+        meshes = split_at(scene, natural, places)
     return MovedContact(forces.outcome, solutions, stretches, system, forces)
 
 

@@ -45,7 +45,7 @@ from rodmodel.pairing import (
 from rodmodel.section import Fields, section_values
 
 # By how much the penalty that suits the rods is stiffer than their sections, squeezed across.
-STIFFER = 1e2
+STIFFER = 1e3
 # Springs of multipliers are at least this part as stiff in a short interval as in the longest.
 SHORT = 0.3
 

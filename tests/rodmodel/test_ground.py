@@ -109,6 +109,24 @@ def test_a_cantilever_pressed_on_a_cylinder_bends_with_it() -> None:
     assert points.force[inside].sum() < 0.02 * points.force.sum()
 
 
+@pytest.mark.parametrize("radius", [200.0, 2000.0])
+def test_a_force_concentrated_on_a_cylinder_is_found_on_coarse_elements(radius: float) -> None:
+    """A border search has nothing to follow there; the natural borders with more at the contact answer as fine ones."""
+    load = rm.SectionForce("bar", 300.0, (0.0, -500.0, 0.0))
+    pair = rm.ContactPair("rest", rm.RodFace("bar", "bottom"), rm.Ground(), (100.0, 200.0), rm.RoundGap(radius, 150.0))
+
+    def force(borders: tuple[float, ...]) -> float:
+        rod = replace(bar(300.0, 1), element_borders=borders)
+        scene = rm.Scene("rest", (rod,), (rm.Clamp("bar", "start"),), (load,), (pair,))
+        solution = rm.solve(scene, level=3, order=5)
+        assert solution.outcome == "converged"
+        assert solution.edge_uncertainty < 5.0
+        return float(solution.contact_points("rest").force.sum())
+
+    coarse, fine = force((0.0, 3.0, 15.0, 75.0, 150.0, 200.0, 250.0, 300.0)), force(tuple(np.linspace(0.0, 300.0, 31)))
+    assert coarse == pytest.approx(fine, rel=1e-3)
+
+
 def test_a_gap_by_table_is_as_given_between_its_stations() -> None:
     """A wedge: the tip touches once the load has closed what the table leaves there."""
     table = rm.GapTable((0.0, 200.0), (0.0, 0.4))
