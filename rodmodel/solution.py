@@ -44,7 +44,7 @@ class Cost:
     Attributes
     ----------
     unknowns : degrees of freedom carried by all rods
-    setup_seconds : sections, elements and the first contact system; wall clock
+    setup_seconds : sections, elements and the contact system that tells where contact is; wall clock
     solve_seconds : contact, border search and the final coefficients; wall clock
     """
 

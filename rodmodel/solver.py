@@ -10,17 +10,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cases.scene import Ground, Rod, Scene
-from rodmodel.assembly import ElementStore, stored_energy
+from rodmodel.assembly import AssembledRod, ElementStore, stored_energy
 from rodmodel.borders import Edge, Rates, border_plan, edge_rates, natural_mesh, placed_meshes, split_at
 from rodmodel.contact import ContactForces, unilateral_contact
 from rodmodel.edges import EDGE_TOLERANCE, EdgeSearch, find_edges
 from rodmodel.joints import Loose
 from rodmodel.loose import loose_rods
 from rodmodel.mesh import RodMesh
+from rodmodel.shape import extents
 from rodmodel.solution import Cost, Solution
+from rodmodel.soundness import lost_accuracy
 from rodmodel.stretches import Stretch, moved, moving_edges, same_topology, stretches_in_contact
 from rodmodel.symmetry import scene_mirrors
-from rodmodel.system import ContactSystem, contact_system
+from rodmodel.system import ContactSystem, RodState, contact_system
 
 Array = NDArray[np.float64]
 
@@ -31,6 +33,8 @@ SystemOn = Callable[[dict[str, RodMesh]], ContactSystem]
 
 # Energy in the contact springs, as a part of the strain energy, above which the penalty falsifies the answer.
 PENALTY_SHARE = 1e-3
+# Part of the displacements that round-off may take; how slender and finely divided rods may be that are not looked at.
+LARGEST_LOSS, ORDINARY = 1e-3, 1000.0
 # How often the search may start anew because stretches appeared, merged or vanished.
 MOST_TOPOLOGIES = 3
 # Solutions where it does not settle: on the natural borders, then twice with more of them.
@@ -76,7 +80,7 @@ def solve(scene: Scene, level: Grades = 5, order: Grades = 6, multipliers: bool 
     cost = Cost(unknowns, ready - begin, time.perf_counter() - ready)
     return Solution(
         scene,
-        _judged(contact, energy, loose),
+        _judged(contact, states, energy, loose),
         contact.solutions,
         contact.stretches,
         contact.system,
@@ -88,8 +92,8 @@ def solve(scene: Scene, level: Grades = 5, order: Grades = 6, multipliers: bool 
     )
 
 
-def _judged(contact: MovedContact, stored_energy: float, loose: Sequence[Loose]) -> str:
-    """The contact's outcome, unless what the penalty springs hold says that they are too soft to stand for contact."""
+def _judged(contact: MovedContact, states: Mapping[str, RodState], stored_energy: float, loose: Sequence[Loose]) -> str:
+    """The contact's outcome, unless springs or round-off have falsified the answer."""
     problem, forces = contact.system.problem, contact.forces
     if forces.outcome.startswith("refused"):
         names = ", ".join(f"'{name}'" for each in loose for name in each.rods)
@@ -103,7 +107,23 @@ def _judged(contact: MovedContact, stored_energy: float, loose: Sequence[Loose])
     if not problem.rigid.any() and contact.outcome == "converged" and penetrating > PENALTY_SHARE * stored_energy:
         share = penetrating / stored_energy
         return f"refused: the penalty is too soft, penetration holds {share:.2g} of the strain energy"
+    for name, assembled in contact.system.rods.items():
+        if contact.outcome == "converged" and _may_lose_digits(assembled):
+            lost = lost_accuracy(assembled, states[name].coefficients)
+            if lost > LARGEST_LOSS:
+                found = f"round-off has taken about {lost:.1g} of the displacement of rod '{name}'"
+                return f"refused: {found}, which is too slender for so many or so short elements"
     return contact.outcome
+
+
+def _may_lose_digits(assembled: AssembledRod) -> bool:
+    """Whether round-off may count: it grows with the square of the length over that of the shortest element, or more.
+
+    Looking costs a few per cent of a solution, so that ordinary rods are spared it.
+    """
+    x_min, x_max, y_min, y_max = extents(assembled.rod.section)
+    slenderness = assembled.rod.length / min(x_max - x_min, y_max - y_min)
+    return max(slenderness, assembled.rod.length / float(np.diff(assembled.borders).min())) > ORDINARY
 
 
 def _grades_of(grades: Grades, rod: Rod) -> int | Sequence[int]:

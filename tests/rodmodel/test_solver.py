@@ -187,3 +187,18 @@ def test_high_levels_are_needed_near_clamps_and_contact_alone() -> None:
 def test_levels_for_some_rods_only_are_refused() -> None:
     with pytest.raises(ValueError, match="found none for rod 'upper'"):
         rm.solve(PAPER["e50-g0"].scene, level={"lower": [3] * 6})
+
+
+def test_a_rod_that_round_off_has_spoilt_says_so() -> None:
+    """10,000 elements of 10 mm on a rod of 15 mm: the tip is off by percents, from condition and not from locking."""
+    length = 1e5
+    rod = rm.Rod(
+        "bar",
+        rm.Line((0.0, 0.0, 0.0), (length, 0.0, 0.0), (0.0, 1.0, 0.0)),
+        rm.Rectangle(15.0, 15.0),
+        rm.Material(200e3, 0.3),
+        tuple(np.linspace(0.0, length, 10001).tolist()),
+    )
+    load = rm.SectionForce("bar", length, (0.0, -1e-3, 0.0))
+    solution = rm.solve(rm.Scene("long", (rod,), (rm.Clamp("bar", "start"),), (load,), ()), level=2, order=4)
+    assert solution.outcome.startswith("refused: round-off has taken about")
