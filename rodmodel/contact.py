@@ -138,12 +138,13 @@ def _energy_left(problem: ContactProblem, multiplier: Array, before: Array) -> f
     return left / ((float(multiplier @ problem.compliance @ multiplier) + left) or 1.0)
 
 
-def unilateral_contact(problem: ContactProblem, settled: bool = True) -> ContactForces:
+def unilateral_contact(problem: ContactProblem, settled: bool = True, guess: BoolArray | None = None) -> ContactForces:
     """Contact forces that only push: f >= 0, d >= 0 (d + f / (c_n w) >= 0 at springs), and one of the two zero.
 
     Loose rods hang on soft springs, whose forces multipliers take away as they do the penetration. Each step of the
     multipliers is then the minimum of a strictly convex quadratic over f >= 0.
 
+    guess : points that may be in contact, shape (n,), to begin with
     settled : go on until the multipliers have done their work; before, the forces tell about where contact is
     """
     force, motion = np.zeros_like(problem.gap), np.zeros_like(problem.motion_load)
@@ -152,7 +153,7 @@ def unilateral_contact(problem: ContactProblem, settled: bool = True) -> Contact
     flexibility = _soft_springs(problem)
     matrix = problem.compliance + problem.motion @ flexibility @ problem.motion.T
     matrix[np.diag_indices_from(matrix)] += 1.0 / problem.spring
-    pushing = PushingForces(matrix)
+    pushing = PushingForces(matrix, guess)
     multiplier, left = force, np.inf
     outcome, size, balance = "stagnated: the multipliers did not settle", 0.0, 0.0
     for _ in range(MOST_STEPS):
@@ -205,8 +206,9 @@ class PushingForces:
     active_sets : tried so far
     """
 
-    def __init__(self, matrix: Array) -> None:
+    def __init__(self, matrix: Array, guess: BoolArray | None) -> None:
         self.active_sets = 0
+        self._guess = guess
         self._matrix = matrix
         self._factor: Array | None = None
         self._active = np.zeros(len(matrix), dtype=bool)
@@ -215,7 +217,7 @@ class PushingForces:
     def closing(self, gap: Array) -> Array | None:
         """The forces for a gap, shape (n,); None where no set of points serves."""
         if self.active_sets == 0:
-            self._choose(gap < 0.0)
+            self._choose(gap < 0.0 if self._guess is None else self._guess)
         force, wrong = self._forces(gap)
         fewest, patience = len(wrong), PATIENCE
         for _ in range(MOST_EXCHANGES):

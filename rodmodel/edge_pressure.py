@@ -30,6 +30,7 @@ from rodmodel.system import ContactSystem, opening
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
+BoolArray = NDArray[np.bool_]
 
 # Points that slide less than this along an element, mm per mm of an edge, do so by round-off.
 SLIDING = 1e-6
@@ -60,16 +61,22 @@ class EdgePressures:
     adjoint_motion: Array
 
 
-def edge_pressures(system: ContactSystem, stretches: Sequence[Stretch], edges: Sequence[Edge]) -> EdgePressures:
-    """Pressures in the middle of the width at each edge while the stretches are held, pulling or pushing."""
-    problem = system.problem
-    held = np.zeros(len(problem.gap), dtype=bool)
+def held_points(system: ContactSystem, stretches: Sequence[Stretch]) -> BoolArray:
+    """Contact points of the intervals within the stretches, shape (n,)."""
+    held = np.zeros(len(system.problem.gap), dtype=bool)
     for stretch in stretches:
         grid = system.grids[stretch.pair]
         middles = 0.5 * (grid.station[:, 0] + grid.station[:, -1])
         inside = (middles > stretch.start) & (middles < stretch.end)
         part = held[system.points[stretch.pair]].reshape(grid.weight.shape)
         part[inside] = True
+    return held
+
+
+def edge_pressures(system: ContactSystem, stretches: Sequence[Stretch], edges: Sequence[Edge]) -> EdgePressures:
+    """Pressures in the middle of the width at each edge while the stretches are held, pulling or pushing."""
+    problem = system.problem
+    held = held_points(system, stretches)
     right = np.zeros((len(held), len(edges)))
     chosen = np.empty(len(edges), dtype=np.int64)
     for number, edge in enumerate(edges):

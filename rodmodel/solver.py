@@ -13,6 +13,7 @@ from cases.scene import Ground, Rod, Scene
 from rodmodel.assembly import AssembledRod, ElementStore, stored_energy
 from rodmodel.borders import Edge, Rates, border_plan, edge_rates, natural_mesh, placed_meshes, split_at
 from rodmodel.contact import ContactForces, unilateral_contact
+from rodmodel.edge_pressure import held_points
 from rodmodel.edges import EDGE_TOLERANCE, EdgeSearch, find_edges
 from rodmodel.joints import Loose
 from rodmodel.loose import loose_rods
@@ -172,7 +173,8 @@ def moved_contact(
         search = _search(scene, natural, stretches, edges, positions, system_on) if edges else None
         system = system_on(natural) if search is None else search.system
         solutions += 1 if search is None else len(search.steps)
-        forces = unilateral_contact(system.problem)
+        guess = None if search is None else held_points(system, moved(stretches, edges, search.positions))
+        forces = unilateral_contact(system.problem, guess=guess)
         found = stretches_in_contact(system, forces)
         if search is not None and search.outcome == "converged":
             wanted = moved(stretches, edges, search.positions)
