@@ -35,7 +35,7 @@ SystemOn = Callable[[dict[str, RodMesh]], ContactSystem]
 # Energy in the contact springs, as a part of the strain energy, above which the penalty falsifies the answer.
 PENALTY_SHARE = 1e-3
 # Part of the displacements that round-off may take; how slender and finely divided rods may be that are not looked at.
-LARGEST_LOSS, ORDINARY = 1e-3, 1000.0
+LARGEST_LOSS, ORDINARY = 1e-3, 100.0
 # How often the search may start anew because stretches appeared, merged or vanished.
 MOST_TOPOLOGIES = 3
 # Solutions where it does not settle: on the natural borders, then twice with more of them.
