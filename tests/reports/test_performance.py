@@ -164,6 +164,7 @@ def test_sizes_are_timed_in_rounds() -> None:
     assert all(timing.runs >= ROUNDS for timing in found.values())
 
 
+@pytest.mark.slow
 def test_every_size_has_its_own_process_and_is_announced() -> None:
     announced: list[str] = []
 

@@ -77,6 +77,7 @@ def test_first_level_gets_the_reduced_law() -> None:
     np.testing.assert_allclose(stress, [0.0, 0.0, 200e3, 0.0, 0.0, 0.0], atol=1e-9)
 
 
+@pytest.mark.slow
 def test_stiffness_integrates_the_energy_of_any_strain() -> None:
     """Energy density by brute force at many points against psi^T S psi."""
     fields = Fields(3)

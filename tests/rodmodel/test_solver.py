@@ -189,6 +189,7 @@ def test_levels_for_some_rods_only_are_refused() -> None:
         rm.solve(PAPER["e50-g0"].scene, level={"lower": [3] * 6})
 
 
+@pytest.mark.slow
 def test_a_rod_that_round_off_has_spoilt_says_so() -> None:
     """10,000 elements of 10 mm on a rod of 15 mm: the tip is off by percents, from condition and not from locking."""
     length = 1e5
