@@ -1,4 +1,4 @@
-"""The 3D reference: a scene as solids of 27-node hexahedra, with node-to-surface penalty contact of straight bars.
+"""The 3D reference: a scene as solids of 27-node hexahedra, with node-to-surface contact.
 
     solutions = solve_sequence(scene)
     convergence = grid_convergence(values, sizes, formal_order(scene))

@@ -13,7 +13,18 @@ from numpy.typing import NDArray
 
 from cases.scene import ENDS, Clamp, Gravity, Line, Rod, Scene, SectionForce, SectionMoment, Support, station_of
 from reference3d.centre_line import stretches, turning_rate
-from reference3d.grading import CLAMP_CELL, LARGEST_CELL, LOAD_CELL, SAMPLES, segment_borders
+from reference3d.facing import patches
+from reference3d.grading import (
+    BED_CELL,
+    CLAMP_CELL,
+    LARGEST_CELL,
+    LOAD_CELL,
+    SAMPLES,
+    ZONE_CELL,
+    ZONE_END_CELL,
+    segment_borders,
+)
+from reference3d.scope import on_bed
 from reference3d.section_mesh import section_extents
 
 Array = NDArray[np.float64]
@@ -22,6 +33,8 @@ Array = NDArray[np.float64]
 LARGEST_TURN = 0.25
 # coarse cells that a straight, untwisted rod has at least; slender ones need no more away from what disturbs
 FEWEST_CELLS = 24
+# cell where a gap that varies is least, of the smallest side of the sections
+LEAST_GAP_CELL = 0.1
 
 
 def layer_borders(scene: Scene, rod: Rod, refinement: int) -> Array:
@@ -62,10 +75,28 @@ def layer_borders(scene: Scene, rod: Rod, refinement: int) -> Array:
         else:
             add(load.start, LARGEST_CELL * between)
             add(load.end, LARGEST_CELL * between)
+    close: list[tuple[float, float, float]] = []  # start, end and largest cell of what may touch
+    for pair in scene.contacts:
+        if all(face.rod != rod.name for face in pair.faces):
+            continue
+        smaller = min(min(section_extents(scene.rod(face.rod).section)) for face in pair.faces)
+        at_ends, within = (BED_CELL, BED_CELL) if on_bed(pair) else (ZONE_END_CELL, ZONE_CELL)
+        if pair.first.rod == rod.name:
+            for place in pair.zone:
+                add(place, largest)
+        for face, patch in zip(pair.faces, patches(scene, pair), strict=True):
+            if face.rod == rod.name:
+                add(patch.start, at_ends * smaller)
+                add(patch.end, at_ends * smaller)
+                close.append((patch.start, patch.end, within * smaller))
+                if patch.least is not None:
+                    add(patch.least, LEAST_GAP_CELL * smaller)
     parts = [np.zeros(1)]
     for start, end in pairwise(sorted(breaks)):
         rate = turning_rate(rod.centre_line, np.linspace(start, end, SAMPLES + 2)[1:-1])
         cap = np.minimum(largest, LARGEST_TURN / np.maximum(rate, LARGEST_TURN / largest))
+        middle = 0.5 * (start + end)
+        cap = np.minimum(cap, min((size for begin, stop, size in close if begin < middle < stop), default=largest))
         parts.append(segment_borders(start, end, breaks[start], breaks[end], cap, refinement)[1:])
     return np.concatenate(parts)
 

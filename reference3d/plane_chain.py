@@ -15,6 +15,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.sparse import csr_array
 
 from reference3d.factor import backward, cholesky, forward
 
@@ -293,3 +294,56 @@ def solve(chain: PlaneChain, force: Array) -> Array:
         coupling = chain.middle_coupling[step.which]
         state[step.inside] = backward(chain.middle[step.which], state[step.inside] - coupling @ borders)
     return state
+
+
+def compliance(chain: PlaneChain, loads: csr_array) -> Array:
+    """Work of every load on the displacement of every other, by elimination alone, with all that is held at zero.
+
+    loads : N, one a row, shape (n_loads, n_planes m); the result is N mm, shape (n_loads, n_loads)
+    """
+    size = chain.border[0].shape[0]
+    count = loads.shape[0]
+    result = np.zeros((count, count))
+    # by plane: loads that reach it, ascending, and their forces there, shape (m, n)
+    waiting: dict[int, tuple[IntArray, Array]] = {}
+
+    def into(plane: int, force: Array) -> Array:
+        return chain.held[plane].into(force) if plane in chain.held else force
+
+    def put(plane: int, which: IntArray, force: Array) -> None:
+        if plane in waiting:
+            before, already = waiting[plane]
+            every = np.union1d(before, which)
+            together = np.zeros((size, len(every)), order="F")
+            together[:, np.searchsorted(every, before)] = already
+            together[:, np.searchsorted(every, which)] += force
+            which, force = every, together
+        waiting[plane] = which, force
+
+    def taken(plane: int, factor: Array) -> tuple[IntArray, Array]:
+        which, force = waiting.pop(plane)
+        state = forward(factor, force)
+        if len(which) == count:
+            result[:] += state.T @ state
+        else:
+            result[np.ix_(which, which)] += state.T @ state
+        return which, state
+
+    by_plane = loads.tocsc()
+    for plane in np.unique(by_plane.tocoo().coords[1] // size).tolist():
+        part = by_plane[:, plane * size : (plane + 1) * size]
+        which = np.unique(part.tocoo().coords[0]).astype(np.int64)
+        put(plane, which, into(plane, np.asfortranarray(part.tocsr()[which].toarray().T)))
+    for step in chain.steps:
+        if step.inside in waiting:
+            which, state = taken(step.inside, chain.middle[step.which])
+            reduced = chain.middle_coupling[step.which].T @ state
+            put(step.start, which, into(step.start, -reduced[:size]))
+            put(step.end, which, into(step.end, -reduced[size:]))
+    for stretch, factor, coupling in zip(chain.stretches, chain.border[:-1], chain.border_coupling, strict=True):
+        if stretch.start in waiting:
+            which, state = taken(stretch.start, factor)
+            put(stretch.end, which, -(coupling.T @ state))
+    if waiting:
+        taken(chain.stretches[-1].end, chain.border[-1])
+    return result

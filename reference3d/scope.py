@@ -1,11 +1,12 @@
-"""What scenes with contact may hold so far: straight, untwisted rods of rectangular section, clamped and under forces.
+"""What `solver` treats as boxes: straight, untwisted rods of rectangular section, clamped and under forces.
 
-Scenes without contact may hold anything.
+All else is for `solid_solver`, which takes anything and more time.
 """
 
 from __future__ import annotations
 
 from cases.scene import (
+    Box,
     Clamp,
     ContactPair,
     Gravity,
@@ -15,6 +16,7 @@ from cases.scene import (
     LineLoad,
     Load,
     Material,
+    Orthotropic,
     Pressure,
     Rectangle,
     Rod,
@@ -24,7 +26,7 @@ from cases.scene import (
     SectionMoment,
 )
 
-INSTEAD = "in scenes with contact yet; use --model rod"
+INSTEAD = "as boxes"
 
 # Default penalty in units of the softer rod's Young's modulus over the smallest side of a section: a rod is squeezed a
 # thousand times as much as it penetrates.
@@ -39,7 +41,7 @@ _OTHER_LOADS: dict[type[Load], tuple[str, str]] = {
 
 
 def require_treatable(scene: Scene) -> None:
-    """Refuse what cannot be meshed, held or loaded where there is contact.
+    """Refuse what is not for boxes.
 
     Raises
     ------
@@ -72,8 +74,14 @@ def penalty(scene: Scene, pair: ContactPair) -> float:
     if pair.penalty is not None:
         return pair.penalty
     rods = [scene.rod(face.rod) for face in pair.faces]
-    modulus = min(isotropic(rod).young_modulus for rod in rods)
-    return STIFF * modulus / min(min(rectangle(rod).width, rectangle(rod).height) for rod in rods)
+    modulus = min(_young_modulus(rod.material) for rod in rods)
+    sections = [rod.section for rod in rods if isinstance(rod.section, Rectangle | Box)]  # no others have flat faces
+    return STIFF * modulus / min(min(section.width, section.height) for section in sections)
+
+
+def _young_modulus(material: Material | Orthotropic) -> float:
+    """Young's modulus, MPa; the largest of an orthotropic material, as springs must not give way along any axis."""
+    return material.young_modulus if isinstance(material, Material) else max(material.young_moduli)
 
 
 def straight_line(rod: Rod) -> Line:

@@ -37,8 +37,7 @@ def solve_sequence(
     for done, refinement in enumerate(REFINEMENTS):
         if progress is not None:
             progress(done, len(REFINEMENTS))
-        coarse = solutions[0] if solutions else None
-        solutions.append(solve(scene, refinement, located=coarse if isinstance(coarse, Solution) else None))
+        solutions.append(solve(scene, refinement, located=solutions[0] if solutions else None))
     return tuple(solutions)
 
 

@@ -8,7 +8,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
-from typing import NoReturn
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,11 +15,13 @@ from numpy.typing import NDArray
 from cases.scene import Scene
 from reference3d.centre_line import frames, points
 from reference3d.faces import face_points, normal_rows
-from reference3d.quadratic import Side, locate, shape_functions
+from reference3d.facing import surface
+from reference3d.quadratic import Side, locate, nodal_weights, shape_functions
 from reference3d.section_mesh import face_edges, gauss_square, located, shapes
 from reference3d.solid_body import SolidBody
+from reference3d.solid_contact import SolidContact
 from reference3d.solid_elasticity import functions, gradients, strain_matrix
-from reference3d.solution import Cost
+from reference3d.solution import ContactPoints, ContactProfile, Cost
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -111,6 +112,15 @@ class SolidRod:
         return found
 
 
+@dataclass(frozen=True, eq=False)
+class SolidPair:
+    """What is kept of one contact pair: distance of the faces, mm, and force, N, at its nodes, shape (n,) each."""
+
+    contact: SolidContact
+    gap: Array
+    force: Array
+
+
 @dataclass(frozen=True)
 class SolidSolution:
     """A scene solved as 3D solids; `reports.solution.Solution` describes the common part.
@@ -133,6 +143,7 @@ class SolidSolution:
     refinement: int
     rods: dict[str, SolidRod]
     reactions: dict[tuple[str, int], Array]
+    pairs: dict[str, SolidPair]
 
     def frame(self, rod: str, station: Array) -> tuple[Array, Array]:
         """Points of the undeformed centre line, global, mm, shape (3, n), and rows e1, e2, t there, (n, 3, 3)."""
@@ -230,10 +241,26 @@ class SolidSolution:
             forces.append((push[..., None] * strip.area).reshape(-1, 3))
         return BedForces(np.concatenate(stations), np.concatenate(positions).T, np.concatenate(forces).T)
 
-    def contact_points(self, pair: str) -> NoReturn:
-        """No scene with contact is solved here, so that there is none to answer for: KeyError."""
-        raise KeyError(pair)
+    def contact_points(self, pair: str) -> ContactPoints:
+        """State of every node of the first face that has a point of the second opposite."""
+        found = self.pairs[pair]
+        return ContactPoints(found.contact.position.T, found.contact.normal.T, found.gap, found.force)
 
-    def contact_profile(self, pair: str) -> NoReturn:
-        """As `contact_points`."""
-        raise KeyError(pair)
+    def contact_profile(self, pair: str) -> ContactProfile:
+        """Nodal pressure along the zone; none where the faces do not lie opposite."""
+        found = self.pairs[pair]
+        contact, first = found.contact, found.contact.pair.first
+        shape = len(contact.station), len(contact.lateral)
+        pressure, taking_part = np.zeros(shape), np.zeros(shape, dtype=bool)
+        pressure.flat[contact.place] = found.force / contact.area
+        taking_part.flat[contact.place] = True
+        across = nodal_weights(contact.lateral[::2], float(contact.lateral[0]), float(contact.lateral[-1]))
+        row = np.arange(shape[0])
+        borders = np.argmax(taking_part, axis=1), shape[1] - 1 - np.argmax(taking_part[:, ::-1], axis=1)
+        return ContactProfile(
+            contact.station,
+            surface(self.scene.rod(first.rod), first.face, contact.station, np.zeros(shape[0])).T,
+            pressure[:, int(np.argmin(np.abs(contact.lateral)))],
+            pressure @ across / np.ptp(contact.lateral),
+            np.maximum(pressure[row, borders[0]], pressure[row, borders[1]]),
+        )

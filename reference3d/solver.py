@@ -1,7 +1,7 @@
 """Solve a scene as a 3D solid: each rod's stiffness factorised once, contact in compliance form.
 
-Straight, clamped bars of rectangular section under forces, in contact or not, are solved here; all other scenes,
-which have no contact so far, by `solid_solver`.
+Straight, clamped bars of rectangular section under forces, in contact along one another or not, are solved here; all
+other scenes by `solid_solver`.
 
 Contact is located on the coarsest mesh; on finer ones compliance is computed for the nodes near it, and every
 other node is seen to be open afterwards.
@@ -29,7 +29,7 @@ from reference3d.contact import (
 from reference3d.factor import compliance
 from reference3d.factor import solve as solve_layers
 from reference3d.field import Field, mirrored
-from reference3d.frames import is_symmetric, rod_frame
+from reference3d.frames import is_symmetric, pair_overlap, rod_frame
 from reference3d.quadratic import line_nodes
 from reference3d.scope import clamps, rectangle, require_treatable
 from reference3d.solid_solution import SolidSolution
@@ -53,7 +53,7 @@ PENALTY_SHARE = 1e-3
 
 
 def solve(
-    scene: Scene, refinement: int = DEFAULT_REFINEMENT, located: Solution | None = None
+    scene: Scene, refinement: int = DEFAULT_REFINEMENT, located: Solution | SolidSolution | None = None
 ) -> Solution | SolidSolution:
     """Solve a scene as a 3D solid.
 
@@ -66,22 +66,20 @@ def solve(
     Raises
     ------
     SceneError
-        if the scene is outside what this solver treats: contact with what `scope` refuses, of rods without a clamp
-        or that are not parallel, of faces that are not; a rod that is not held; a Poisson's ratio next to 0.5.
+        if a rod is held by nothing but contact, nothing lies opposite a face that may touch, Poisson's ratio is next
+        to 0.5, or the machine's memory is too small.
     ValueError
         if `refinement` is below 1.
     """
     if refinement < 1:
         raise ValueError(f"refinement: found {refinement}; a whole number of at least 1 is needed")
     _require_compressible(scene)
-    if not scene.contacts and not _is_clamped_bars(scene):
-        return solve_solid(scene, refinement)
-    return _solve_bars(scene, refinement, located)
+    if _is_clamped_bars(scene):
+        return _solve_bars(scene, refinement, located if isinstance(located, Solution) else None)
+    return solve_solid(scene, refinement, located if isinstance(located, SolidSolution) else None)
 
 
 def _solve_bars(scene: Scene, refinement: int, located: Solution | None) -> Solution:
-    require_treatable(scene)
-    _require_support(scene)
     begin = time.perf_counter()
     symmetric = is_symmetric(scene)
     # contact is located on the coarsest mesh, so that compliance is computed only where it is needed
@@ -108,9 +106,12 @@ def _solve_bars(scene: Scene, refinement: int, located: Solution | None) -> Solu
 
 
 def _is_clamped_bars(scene: Scene) -> bool:
+    """Whether `scope` takes the scene, every rod has a clamp and those in contact are parallel."""
     try:
         require_treatable(scene)
         _require_support(scene)
+        for pair in scene.contacts:
+            pair_overlap(scene, pair)
     except SceneError:
         return False
     return True

@@ -2,8 +2,9 @@
 
 import numpy as np
 import pytest
+from scipy.sparse import csr_array
 
-from reference3d.plane_chain import HeldPlane, combinations_held, factorise, solve
+from reference3d.plane_chain import HeldPlane, combinations_held, compliance, factorise, solve
 
 SIZE, KIND = 5, np.array([0, 1, *[0] * 9, 2, *[0] * 6])
 FIXED = np.arange(SIZE) < 2
@@ -66,3 +67,20 @@ def test_a_chain_that_is_not_held_is_refused(layers):
 
     with pytest.raises(np.linalg.LinAlgError, match="positive definite"):
         factorise(lambda _: singular, np.zeros(2, dtype=int), {})
+
+
+@pytest.mark.parametrize("borders", [(), (0, 18), (0, 7, 18)])
+@pytest.mark.parametrize("combined", [False, True])
+def test_compliance_is_the_work_of_loads_on_displacements(layers, borders, combined):
+    rng = np.random.default_rng(7)
+    plane = combinations_held(rng.standard_normal((2, SIZE))) if combined else HeldPlane(None, FIXED)
+    chain = factorise(lambda kind: layers[kind], KIND, dict.fromkeys((2 * border for border in borders), plane))
+    planes = 2 * len(KIND) + 1
+    loads = np.zeros((6, planes, SIZE))
+    for load, (start, end) in zip(loads, [(0, 1), (4, 7), (36, 37), (13, 16), (5, 6), (20, 30)], strict=True):
+        load[start:end] = rng.standard_normal((end - start, SIZE))
+
+    found = compliance(chain, csr_array(loads.reshape(6, -1)))
+
+    moved = solve(chain, np.moveaxis(loads, 0, 2))
+    np.testing.assert_allclose(found, loads.reshape(6, -1) @ moved.reshape(-1, 6), atol=1e-11)

@@ -1,4 +1,4 @@
-"""What the 3D reference refuses where there is contact, and line loads as the one distributed force it takes there."""
+"""What is for boxes and what is not, and line loads as the one distributed force that boxes take."""
 
 import math
 from dataclasses import replace
@@ -29,6 +29,7 @@ from cases.scene import (
     SectionMoment,
     Support,
 )
+from reference3d.scope import require_treatable
 from reference3d.solver import solve
 
 STRAIGHT = Line((0.0, 0.0, 90.0), (60.0, 0.0, 90.0), (0.0, 1.0, 0.0))
@@ -57,21 +58,21 @@ def with_third_rod(scene, **changes):
         ({"centre_line": replace(STRAIGHT, twist=0.1)}, "centre_line", "a twisted line"),
     ],
 )
-def test_what_is_not_meshed_where_there_is_contact_is_refused_with_the_way_out(two_cantilevers, changes, key, found):
+def test_what_is_not_meshed_as_boxes_is_named(two_cantilevers, changes, key, found):
     with pytest.raises(SceneError) as caught:
-        solve(with_third_rod(two_cantilevers(50000.0, 0.0), **changes))
+        require_treatable(with_third_rod(two_cantilevers(50000.0, 0.0), **changes))
 
     assert (caught.value.key, caught.value.found) == (f"rods.third.{key}", found)
     assert "does not mesh" in caught.value.remedy
-    assert "in scenes with contact yet; use --model rod" in caught.value.remedy
+    assert "as boxes" in caught.value.remedy
 
 
-def test_an_orthotropic_rod_is_refused_where_there_is_contact(two_cantilevers):
+def test_an_orthotropic_rod_is_not_for_boxes(two_cantilevers):
     scene = two_cantilevers(50000.0, 0.0)
     scene = replace(scene, rods=(scene.rods[0], replace(scene.rods[1], material=WOOD)))
 
-    with pytest.raises(SceneError, match=r"rods\.upper\.material: found an orthotropic material; .* use --model rod"):
-        solve(scene)
+    with pytest.raises(SceneError, match=r"rods\.upper\.material: found an orthotropic material; .* as boxes"):
+        require_treatable(scene)
 
 
 @pytest.mark.parametrize(
@@ -82,15 +83,14 @@ def test_an_orthotropic_rod_is_refused_where_there_is_contact(two_cantilevers):
         (Gravity("lower", (0.0, -9810.0, 0.0)), "gravity"),
     ],
 )
-def test_other_loads_than_forces_are_refused_where_there_is_contact(two_cantilevers, load, found):
+def test_other_loads_than_forces_are_not_for_boxes(two_cantilevers, load, found):
     scene = two_cantilevers(50000.0, 0.0)
     rods = (replace(scene.rods[0], material=STEEL), scene.rods[1])
 
     with pytest.raises(SceneError) as caught:
-        solve(replace(scene, rods=rods, loads=(*scene.loads, load)))
+        require_treatable(replace(scene, rods=rods, loads=(*scene.loads, load)))
 
     assert (caught.value.key, caught.value.found) == ("loads #2.kind", found)
-    assert "use --model rod" in caught.value.remedy
 
 
 @pytest.mark.parametrize(
@@ -101,24 +101,22 @@ def test_other_loads_than_forces_are_refused_where_there_is_contact(two_cantilev
         (Clamp("lower", "end", rotation=(0.0, 0.0, 0.01)), "supports #3.rotation"),
     ],
 )
-def test_other_supports_than_clamps_at_rest_are_refused_where_there_is_contact(two_cantilevers, support, key):
+def test_other_supports_than_clamps_at_rest_are_not_for_boxes(two_cantilevers, support, key):
     scene = two_cantilevers(50000.0, 0.0)
 
-    with pytest.raises(SceneError, match=r"use --model rod") as caught:
-        solve(replace(scene, supports=(*scene.supports, support)))
+    with pytest.raises(SceneError, match=r"as boxes") as caught:
+        require_treatable(replace(scene, supports=(*scene.supports, support)))
 
     assert caught.value.key == key
 
 
-def test_joints_are_refused_where_there_is_contact(two_cantilevers):
+def test_joints_are_not_for_boxes(two_cantilevers):
     beyond = Line((300.0, 0.0, 0.0), (300.0, 0.0, 60.0), (0.0, 1.0, 0.0))
     scene = with_third_rod(two_cantilevers(50000.0, 0.0), centre_line=beyond)
     joint = Joint((RodEnd("lower", "end"), RodEnd("third", "start")))
 
-    with pytest.raises(
-        SceneError, match=r"joints: found 1; the 3D reference does not join rods in scenes with contact"
-    ):
-        solve(
+    with pytest.raises(SceneError, match=r"joints: found 1; the 3D reference does not join rods as boxes"):
+        require_treatable(
             replace(
                 scene,
                 rods=(*scene.rods[:2], replace(scene.rods[2], section=scene.rods[0].section)),
@@ -128,11 +126,11 @@ def test_joints_are_refused_where_there_is_contact(two_cantilevers):
         )
 
 
-def test_beds_are_refused_where_there_is_contact(two_cantilevers):
+def test_beds_are_not_for_boxes(two_cantilevers):
     bed = Bed(RodFace("lower", "bottom"), 0.0, 300.0, 1.0)
 
-    with pytest.raises(SceneError, match=r"beds: found 1; the 3D reference does not lay .* use --model rod"):
-        solve(replace(two_cantilevers(50000.0, 0.0), beds=(bed,)))
+    with pytest.raises(SceneError, match=r"beds: found 1; the 3D reference does not lay .* as boxes"):
+        require_treatable(replace(two_cantilevers(50000.0, 0.0), beds=(bed,)))
 
 
 def test_there_are_reactions_at_the_ends_alone(cantilever):
