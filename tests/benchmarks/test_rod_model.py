@@ -58,7 +58,7 @@ class PlainSparse:
         mirrors = {rod.name: (False, False) for rod in scene.rods}
         meshes = {rod.name: natural_mesh(scene, rod, LEVEL, ORDER) for rod in scene.rods}
         # borrowed for its contact points alone
-        self.system = contact_system(scene, mirrors, meshes, ElementStore())
+        self.system = contact_system(scene, mirrors, meshes, ElementStore(), multipliers=False)
         self.fields = Fields(LEVEL)
         count, start = self.fields.count, 0
         rows, columns, values, gaps, self.held, self.load = [], [], [], [], [], []
