@@ -79,7 +79,8 @@ class ContactPair:
     zone : candidate zone, arc length along the first rod (start, end), mm
     gap : g, initial distance of the faces, mm. It counts as given and the drawn distance is not used, unless it is
         "drawn": then it is the distance from the first face along its normal to the second face as drawn.
-    penalty : c_n, N/mm^3; None for one that suits the rods' compliance
+    penalty : c_n, N/mm^3; None for one that suits the rods. It counts where a solver is told to leave the penetration
+        of the springs; otherwise contact forces do not depend on it.
     """
 
     name: str
