@@ -56,6 +56,9 @@ class Contact(_Object):
     centre: float | None = Field(description=_described("contact_centre") + " Null without contact.")
     edges: list[Stretch] = Field(description=_described("contact_edges"))
     edges_outer: list[Stretch] = Field(description=_described("contact_edges_outer"))
+    edges_resolution: float = Field(
+        description="Widest interval of the solver's stations that holds one of the edges in the middle, mm."
+    )
     penetration: float = Field(description=_described("penetration"))
     complementarity_residual: float = Field(description=_described("complementarity_residual"))
     work: float = Field(description=_described("contact_work"))
@@ -150,6 +153,7 @@ def _contact(contact: ContactQuantities) -> Contact:
         centre=contact.centre,
         edges=[list(stretch) for stretch in contact.edges],
         edges_outer=[list(stretch) for stretch in contact.edges_outer],
+        edges_resolution=contact.edges_resolution,
         penetration=contact.penetration,
         complementarity_residual=contact.complementarity_residual,
         work=contact.work,
