@@ -136,6 +136,7 @@ class SolidSolution:
     scene: Scene
     outcome: str
     contact_solutions: int
+    active_sets: int
     strain_energy: float
     cost: Cost
     residual: float

@@ -82,10 +82,10 @@ def solve_solid(scene: Scene, refinement: int, located: SolidSolution | None = N
         if a rod is not held, the machine's memory is too small, or nothing lies opposite a face that may touch.
     """
     begin = time.perf_counter()
-    steps = 0
+    solutions, steps = 0, 0
     if located is None and refinement > 1 and scene.contacts:
         located = solve_solid(scene, 1)
-        steps = located.contact_solutions
+        solutions, steps = located.contact_solutions, located.active_sets
     bodies = {rod.name: solid_body(scene, rod, refinement) for rod in scene.rods}
     held = {name: holds(scene, body) for name, body in bodies.items()}
     require_held(scene, bodies, held, structures(scene))
@@ -109,7 +109,7 @@ def solve_solid(scene: Scene, refinement: int, located: SolidSolution | None = N
     candidates = [_candidates(scene, contact, located) for contact in contacts]
     while True:
         found = _contact_forces(responses, skeleton, contacts, candidates)
-        steps += found.steps
+        solutions, steps = solutions + 1, steps + found.steps
         fields = _fields(responses, skeleton, contacts, found.forces)
         gaps = [_gap(contact, fields) for contact in contacts]
         missed = [~chosen & (gap < 0.0) for chosen, gap in zip(candidates, gaps, strict=True)]
@@ -154,7 +154,8 @@ def solve_solid(scene: Scene, refinement: int, located: SolidSolution | None = N
     return SolidSolution(
         scene=scene,
         outcome=outcome,
-        contact_solutions=steps,
+        contact_solutions=solutions,
+        active_sets=steps,
         strain_energy=energy,
         cost=Cost(unknowns, ready - begin, time.perf_counter() - ready),
         residual=residual,

@@ -101,6 +101,7 @@ class Solution:
     scene: Scene
     outcome: str
     contact_solutions: int
+    active_sets: int
     strain_energy: float
     cost: Cost
     residual: float

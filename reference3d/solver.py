@@ -83,10 +83,10 @@ def _solve_bars(scene: Scene, refinement: int, located: Solution | None) -> Solu
     begin = time.perf_counter()
     symmetric = is_symmetric(scene)
     # contact is located on the coarsest mesh, so that compliance is computed only where it is needed
-    steps = 0
+    solutions, steps = 0, 0
     if located is None and refinement > 1 and scene.contacts:
         located = _solve_bars(scene, 1, None)
-        steps = located.contact_solutions
+        solutions, steps = located.contact_solutions, located.active_sets
     bodies = {rod.name: discretise(scene, rod, refinement, symmetric) for rod in scene.rods}
     borders = {name: body.borders for name, body in bodies.items()}
     nodes = [contact_nodes(scene, pair, borders, symmetric) for pair in scene.contacts]
@@ -95,13 +95,13 @@ def _solve_bars(scene: Scene, refinement: int, located: Solution | None) -> Solu
     candidates = [_candidates(pair, grid, located) for pair, grid in zip(scene.contacts, nodes, strict=True)]
     while True:
         forces, given_way, outcome, tried = _contact_forces(scene, bodies, nodes, candidates)
-        steps += tried
+        solutions, steps = solutions + 1, steps + tried
         fields, gaps = _respond(scene, bodies, nodes, forces)
         missed = [~chosen & (gap < 0.0) for chosen, gap in zip(candidates, gaps, strict=True)]
         if not any(miss.any() for miss in missed):
             break
         candidates = [np.ones_like(chosen) for chosen in candidates]
-    found = _Found(forces, given_way, gaps, fields, outcome, steps)
+    found = _Found(forces, given_way, gaps, fields, outcome, solutions, steps)
     return _collect(scene, refinement, symmetric, bodies, nodes, found, (begin, ready))
 
 
@@ -231,7 +231,7 @@ class _Found:
     forces : at the contact nodes of each pair, N
     given_way, gaps : how far the springs of each pair give way, and distance of its faces, mm
     fields : displacement and force of each body
-    outcome, steps : of the contact iteration
+    outcome, solutions, steps : of the contact iteration
     """
 
     forces: list[Array]
@@ -239,6 +239,7 @@ class _Found:
     gaps: list[Array]
     fields: dict[str, tuple[Array, Array]]
     outcome: str
+    solutions: int
     steps: int
 
 
@@ -292,7 +293,8 @@ def _collect(
     return Solution(
         scene=scene,
         outcome=outcome,
-        contact_solutions=found.steps,
+        contact_solutions=found.solutions,
+        active_sets=found.steps,
         strain_energy=energy,
         cost=Cost(unknowns, ready - begin, time.perf_counter() - ready),
         residual=residual,

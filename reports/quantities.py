@@ -237,6 +237,7 @@ class Quantities:
     equilibrium_residual: float
     unknowns: int
     contact_solutions: int
+    active_sets: int
     setup_seconds: float
     solve_seconds: float
 
@@ -298,6 +299,7 @@ def evaluate(
         equilibrium_residual=equilibrium_residual(scene, applied, held, pressing),
         unknowns=solution.cost.unknowns,
         contact_solutions=solution.contact_solutions,
+        active_sets=solution.active_sets,
         setup_seconds=solution.cost.setup_seconds,
         solve_seconds=solution.cost.solve_seconds,
     )

@@ -99,7 +99,8 @@ class Result(_Object):
     unknowns: int = Field(description="Unknowns carried in the solution.")
     converged: bool
     outcome: str = Field(description="'converged', or why not.")
-    contact_solutions: int = Field(description="Contact solutions spent (border positions or active sets tried).")
+    contact_solutions: int = Field(description="Contact problems solved, one a mesh or set of element borders.")
+    active_sets: int = Field(description="Sets of touching points tried in all contact problems.")
     seconds: Seconds
     strain_energy: float = Field(description=_described("strain_energy"))
     equilibrium_residual: float = Field(description=_described("equilibrium_residual"))
@@ -132,6 +133,7 @@ def result(
         converged=quantities.converged,
         outcome=quantities.outcome,
         contact_solutions=quantities.contact_solutions,
+        active_sets=quantities.active_sets,
         seconds=Seconds(setup=quantities.setup_seconds, solve=quantities.solve_seconds, total=total_seconds),
         strain_energy=quantities.strain_energy,
         equilibrium_residual=quantities.equilibrium_residual,

@@ -99,7 +99,8 @@ class Solution(Protocol):
     scene : what was solved
     outcome : 'converged', or why not: 'cycling', 'stagnated', 'refused: reason'. A solution that did not converge
         still answers, so that one can look at it.
-    contact_solutions : number of contact solutions spent (border positions tried, or active sets)
+    contact_solutions : contact problems solved, one a mesh or set of element borders
+    active_sets : sets of touching points tried in all of them
     strain_energy : elastic energy of all rods, N mm
     cost : see `Cost`
     """
@@ -110,6 +111,8 @@ class Solution(Protocol):
     def outcome(self) -> str: ...
     @property
     def contact_solutions(self) -> int: ...
+    @property
+    def active_sets(self) -> int: ...
     @property
     def strain_energy(self) -> float: ...
     @property

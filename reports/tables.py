@@ -55,7 +55,9 @@ def print_run(case: Case, run: Run) -> None:
     """Print one model's answer to a case."""
     console, quantities = _console(), run.quantities
     console.print(f"[bold]{case.title}[/] ({case.name}), {_model(run)}: {quantities.outcome}")
-    console.print(f"{_cost(run)}; {quantities.contact_solutions} contact solutions")
+    console.print(
+        f"{_cost(run)}; {quantities.contact_solutions} contact solutions, {quantities.active_sets} active sets"
+    )
     contacts = Table(
         "contact",
         "force, N",

@@ -79,7 +79,8 @@ class Solution:
     ----------
     scene : what was solved
     outcome : 'converged', 'stagnated: ...' or 'refused: ...'
-    contact_solutions : contact solutions spent, one a set of border positions
+    contact_solutions : contact problems solved, one a set of border positions
+    active_sets : sets of touching points tried in all of them
     stretches : parts of the zones found in contact, and how far the edges may be from their ends
     system : rods and contact points on the final borders
     force : at every contact point of the system, N
@@ -92,6 +93,7 @@ class Solution:
     scene: Scene
     outcome: str
     contact_solutions: int
+    active_sets: int
     stretches: tuple[Stretch, ...]
     system: ContactSystem
     force: Array

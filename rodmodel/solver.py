@@ -26,6 +26,7 @@ from rodmodel.symmetry import scene_mirrors
 from rodmodel.system import ContactSystem, RodState, contact_system
 
 Array = NDArray[np.float64]
+BoolArray = NDArray[np.bool_]
 
 # A level or an order: the same everywhere, or by rod name one for each element.
 Grades = int | Mapping[str, Sequence[int]]
@@ -83,6 +84,7 @@ def solve(scene: Scene, level: Grades = 5, order: Grades = 6, multipliers: bool 
         scene,
         _judged(contact, states, energy, loose),
         contact.solutions,
+        contact.active_sets,
         contact.stretches,
         contact.system,
         forces.force,
@@ -144,11 +146,13 @@ class MovedContact:
     Attributes
     ----------
     outcome : of the last contact solution
-    solutions : contact solutions spent
+    solutions : contact problems solved
+    active_sets : sets of points tried in all of them
     """
 
     outcome: str
     solutions: int
+    active_sets: int
     stretches: tuple[Stretch, ...]
     system: ContactSystem
     forces: ContactForces
@@ -168,41 +172,50 @@ def moved_contact(
 
     system : on the natural borders, at any level: its solution tells where to begin
     """
-    forces = unilateral_contact(system.problem, settled=False)
-    stretches, solutions = stretches_in_contact(system, forces), 1
+    solutions, active_sets = 1, 0
+
+    def solve_contact(system: ContactSystem, settled: bool = True, guess: BoolArray | None = None) -> ContactForces:
+        nonlocal active_sets
+        forces = unilateral_contact(system.problem, settled, guess)
+        active_sets += forces.active_sets
+        return forces
+
+    forces = solve_contact(system, settled=False)
+    stretches = stretches_in_contact(system, forces)
     for attempt in range(MOST_TOPOLOGIES):
         edges, positions = moving_edges(scene, stretches)
         search = _search(scene, natural, stretches, edges, positions, system_on) if edges else None
         system = system_on(natural) if search is None else search.system
         solutions += 1 if search is None else len(search.steps)
+        active_sets += 0 if search is None else len(search.steps)
         guess = None if search is None else held_points(system, moved(stretches, edges, search.positions))
-        forces = unilateral_contact(system.problem, guess=guess)
+        forces = solve_contact(system, guess=guess)
         found = stretches_in_contact(system, forces)
         if search is not None and search.outcome == "converged":
             wanted = moved(stretches, edges, search.positions)
             if same_topology(found, wanted):
                 settled = tuple(replace(stretch, slack=EDGE_TOLERANCE) for stretch in wanted)
-                return MovedContact(forces.outcome, solutions, settled, system, forces)
+                return MovedContact(forces.outcome, solutions, active_sets, settled, system, forces)
         stretches = found
         stagnated = search is not None and search.outcome == "stagnated"
         if stagnated and attempt == 0:
             # A better guess may help: that of the natural borders at the level asked for.
             system, solutions = system_on(natural), solutions + 1
-            forces = unilateral_contact(system.problem)
+            forces = solve_contact(system)
             stretches, stagnated = stretches_in_contact(system, forces), False
         if forces.outcome != "converged" or not moving_edges(scene, stretches)[0]:
-            return MovedContact(forces.outcome, solutions, stretches, system, forces)
+            return MovedContact(forces.outcome, solutions, active_sets, stretches, system, forces)
         if stagnated:
             break
     meshes = natural
     for _ in range(UNMOVED):
         system = system_on(meshes)
-        forces = unilateral_contact(system.problem)
+        forces = solve_contact(system)
         stretches, solutions = stretches_in_contact(system, forces), solutions + 1
         edges, positions = moving_edges(scene, stretches)
         places = [(scene.contact(edge.pair), float(at)) for edge, at in zip(edges, positions, strict=True)]
         meshes = split_at(scene, natural, places)
-    return MovedContact(forces.outcome, solutions, stretches, system, forces)
+    return MovedContact(forces.outcome, solutions, active_sets, stretches, system, forces)
 
 
 def _search(

@@ -68,6 +68,7 @@ class BeamSolution:
     contact: FakeContact
     outcome: str = "converged"
     contact_solutions: int = 5
+    active_sets: int = 9
     strain_energy: float = 1.0
     cost: FakeCost = field(default_factory=FakeCost)
 

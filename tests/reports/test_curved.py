@@ -63,6 +63,7 @@ class ArcSolution:
     support: Array
     outcome: str = "converged"
     contact_solutions: int = 1
+    active_sets: int = 1
     strain_energy: float = 1.0
     cost: Cost = field(default_factory=Cost)
 
