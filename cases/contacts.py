@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import Literal
@@ -13,7 +14,7 @@ from numpy.typing import NDArray
 from cases.centre_lines import Line
 from cases.checks import require
 from cases.rods import Face, Rod, RodFace
-from cases.sections import Box, Rectangle
+from cases.sections import Box, Rectangle, section_reach
 
 _Array = NDArray[np.float64]
 
@@ -132,6 +133,25 @@ def check_gap(pair: ContactPair, zone: tuple[float, float], key: str) -> None:
         case _:
             number = isinstance(pair.gap, int | float) and math.isfinite(pair.gap)
             require(number, key, pair.gap, "a finite length is needed, a table, a round gap or 'drawn'")
+
+
+def require_shallow(pair: ContactPair, rods: Sequence[Rod], key: str) -> None:
+    """See that an interference is not deeper than the rods of the pair are thick."""
+    if pair.gap == "drawn":
+        return
+    stations = {*pair.zone}
+    match pair.gap:
+        case GapTable():
+            stations |= {min(max(station, pair.zone[0]), pair.zone[1]) for station in pair.gap.stations}
+        case RoundGap():
+            stations |= {min(max(pair.gap.station, pair.zone[0]), pair.zone[1])}
+    deepest = -float(given_gap(pair.gap, np.array(sorted(stations))).min())
+    directions = {"top": (0.0, 1.0), "bottom": (0.0, -1.0), "right": (1.0, 0.0), "left": (-1.0, 0.0)}
+    for face, rod in zip(pair.faces, rods, strict=True):
+        inward = -np.array(directions[face.face])
+        thick = section_reach(rod.section, inward) + section_reach(rod.section, -inward)
+        remedy = f"rod '{rod.name}' is {thick:g} mm thick there, and an interference must be less"
+        require(deepest < thick, key, f"an interference of {deepest:g} mm", remedy)
 
 
 @dataclass(frozen=True)

@@ -27,6 +27,7 @@ from cases.contacts import (
     face_geometry,
     given_gap,
     require_facing,
+    require_shallow,
 )
 from cases.loads import Gravity, LineLoad, Load, Pressure, SectionForce, SectionMoment, check_load
 from cases.materials import Material, Orthotropic
@@ -197,6 +198,7 @@ class Scene:
         remedy = f"the zone must rise and lie on rod '{rod.name}', which runs from 0 to {rod.length:g} mm"
         require(ok, f"{key}.zone", f"{start:g} .. {end:g}", remedy)
         check_gap(pair, pair.zone, f"{key}.gap")
+        require_shallow(pair, [self.rod(face.rod) for face in pair.faces], f"{key}.gap")
         if pair.penalty is not None:
             require_positive(pair.penalty, f"{key}.penalty", "a penalty")
         if isinstance(pair.second, Ground):

@@ -63,7 +63,7 @@ class ContactForces:
     Attributes
     ----------
     force : f, N, never negative, shape (n,)
-    motion : q, shape (n_motions,)
+    motion : q, shape (n_motions,); of a refused problem the motion that contact leaves unresisted
     outcome : 'converged', 'stagnated: ...' or 'refused: ...'
     active_sets : tried
     """
@@ -148,8 +148,9 @@ def unilateral_contact(problem: ContactProblem, settled: bool = True, guess: Boo
     settled : go on until the multipliers have done their work; before, the forces tell about where contact is
     """
     force, motion = np.zeros_like(problem.gap), np.zeros_like(problem.motion_load)
-    if not _can_balance(problem):
-        return ContactForces(force, motion, "refused: contact does not hold what nothing else holds", 0)
+    escaping = _escaping_motion(problem)
+    if escaping.any():
+        return ContactForces(force, escaping, "refused: contact does not hold what nothing else holds", 0)
     flexibility = _soft_springs(problem)
     matrix = problem.compliance + problem.motion @ flexibility @ problem.motion.T
     matrix[np.diag_indices_from(matrix)] += 1.0 / problem.spring
@@ -278,14 +279,18 @@ class PushingForces:
             return np.maximum(-gap, 0.0)
 
 
-def _can_balance(problem: ContactProblem) -> bool:
-    """Whether pushing forces of some size can balance the loose rods."""
-    size = float(np.abs(problem.motion_load).max(initial=0.0))
+def _escaping_motion(problem: ContactProblem) -> Array:
+    """A rigid motion that the loads drive and no pushing forces hold, shape (n_motions,); zero where they can.
+
+    What the best of such forces leave unbalanced closes no gap and is worked on by the loads (Farkas' lemma).
+    """
+    load = problem.motion_load
+    size = float(np.abs(load).max(initial=0.0))
     if size == 0.0:
-        return True
+        return np.zeros_like(load)
     if not len(problem.gap):
-        return False
+        return load
     from scipy.optimize import nnls
 
-    _, missing = nnls(problem.motion.T, -problem.motion_load)
-    return bool(missing <= ROUND_OFF * size)
+    balancing, missing = nnls(problem.motion.T, -load)
+    return np.zeros_like(load) if missing <= ROUND_OFF * size else problem.motion.T @ balancing + load

@@ -15,7 +15,6 @@ from rodmodel.borders import Edge, Rates, border_plan, edge_rates, natural_mesh,
 from rodmodel.contact import ContactForces, unilateral_contact
 from rodmodel.edge_pressure import held_points
 from rodmodel.edges import EDGE_TOLERANCE, EdgeSearch, find_edges
-from rodmodel.joints import Loose
 from rodmodel.loose import loose_rods
 from rodmodel.mesh import RodMesh
 from rodmodel.shape import extents
@@ -82,7 +81,7 @@ def solve(scene: Scene, level: Grades = 5, order: Grades = 6, multipliers: bool 
     cost = Cost(unknowns, ready - begin, time.perf_counter() - ready)
     return Solution(
         scene,
-        _judged(contact, states, energy, loose),
+        _judged(contact, states, energy),
         contact.solutions,
         contact.active_sets,
         contact.stretches,
@@ -95,11 +94,11 @@ def solve(scene: Scene, level: Grades = 5, order: Grades = 6, multipliers: bool 
     )
 
 
-def _judged(contact: MovedContact, states: Mapping[str, RodState], stored_energy: float, loose: Sequence[Loose]) -> str:
+def _judged(contact: MovedContact, states: Mapping[str, RodState], stored_energy: float) -> str:
     """The contact's outcome, unless springs or round-off have falsified the answer."""
     problem, forces = contact.system.problem, contact.forces
     if forces.outcome.startswith("refused"):
-        names = ", ".join(f"'{name}'" for each in loose for name in each.rods)
+        names = ", ".join(f"'{name}'" for name in contact.system.moved_by(forces.motion))
         return f"refused: contact does not hold {names} against the loads, and nothing else does"
     springs = forces.force**2 / problem.spring
     penetrating = 0.5 * sum(

@@ -46,6 +46,8 @@ from rodmodel.section import Fields, section_values
 
 # By how much the penalty that suits the rods is stiffer than their sections, squeezed across.
 STIFFER = 1e3
+# Rods count as moved from this part of what the farthest moves on.
+MOVED = 1e-6
 # Springs of multipliers are at least this part as stiff in a short interval as in the longest.
 SHORT = 0.3
 
@@ -109,6 +111,17 @@ class ContactSystem:
                 held |= {node: unit @ motion for node, unit in joined.motions.items()}
             result[name] = RodState(load, held, coefficients(assembled, load, held))
         return result
+
+    def moved_by(self, free: Array) -> list[str]:
+        """Names of the loose rods that free motions, shape (n_free,), move."""
+        if self.skeleton is None:
+            return []
+        motion = self.skeleton.free @ free
+        far = {
+            name: max(float(np.abs(unit @ motion).max()) for unit in joined.motions.values())
+            for name, joined in self.skeleton.rods.items()
+        }
+        return [name for name, moved in far.items() if moved > MOVED * max(far.values())]
 
 
 def contact_system(

@@ -138,7 +138,7 @@ def test_a_face_may_lie_on_ground(modulus):
     assert scene(contacts=(resting,)).contact("rest").faces == (resting.first,)
 
 
-@pytest.mark.parametrize("gap", [-0.2, 3.0, GapTable((200.0, 260.0), (0.0, -0.1)), RoundGap(-50.0, 250.0), "drawn"])
+@pytest.mark.parametrize("gap", [-0.2, 3.0, GapTable((200.0, 260.0), (0.0, -0.1)), RoundGap(-500.0, 250.0), "drawn"])
 def test_gaps_may_be_negative_vary_and_be_as_drawn(gap):
     assert scene(contacts=(replace(OVERLAP, gap=gap),)).contact("overlap").gap == gap
 
@@ -184,6 +184,9 @@ def test_half_the_width_counts_along_the_faces_not_across_them():
         ({"gap": RoundGap(0.0, 250.0)}, "gap.radius"),
         ({"gap": RoundGap(49.0, 250.0)}, "gap.radius"),  # does not reach over the zone
         ({"gap": RoundGap(500.0, math.inf)}, "gap"),
+        ({"gap": -15.0}, "gap"),  # as deep as the bars are thick
+        ({"gap": GapTable((150.0, 250.0, 350.0), (0.0, -16.0, 0.0))}, "gap"),
+        ({"gap": RoundGap(500.0, 250.0, -16.0)}, "gap"),
         ({"second": Ground(0.0)}, "second.modulus"),
         ({"second": Ground(), "zone": (200.0, 300.1)}, "zone"),
         ({"second": Ground(), "first": RodFace("lower", "under")}, "first.face"),

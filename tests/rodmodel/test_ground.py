@@ -88,6 +88,20 @@ def test_a_bar_lifted_off_the_ground_is_refused_by_name() -> None:
     assert solution.outcome.startswith("refused: contact does not hold 'bar'")
 
 
+def test_only_the_rods_that_contact_does_not_hold_are_named() -> None:
+    """The lower bar rests on the ground; the upper one is lifted off it."""
+    scene = on_ground(200.0, rm.Ground(), (rm.SectionForce("bar", 100.0, (0.0, -500.0, 0.0)),))
+    upper = bar(200.0, 8, "upper", height=SIDE)
+    lifted = rm.SectionForce("upper", 60.0, (0.0, 5.0, 0.0))
+    pair = rm.ContactPair("bars", rm.RodFace("bar", "top"), rm.RodFace("upper", "bottom"), (0.0, 200.0), 0.0)
+
+    solution = rm.solve(
+        replace(scene, rods=(*scene.rods, upper), loads=(*scene.loads, lifted), contacts=(*scene.contacts, pair))
+    )
+
+    assert solution.outcome.startswith("refused: contact does not hold 'upper' against the loads")
+
+
 def test_a_cantilever_pressed_on_a_cylinder_bends_with_it() -> None:
     """Where it lies on a cylinder of radius R its moment is E I / R and does not change: it presses at the ends alone.
 
