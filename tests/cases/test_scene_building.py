@@ -159,7 +159,7 @@ GAPS = {
     '"drawn"': "drawn",
     '{ stations = [0, "0.4 m"], gaps = ["0.5 mm", -1] }': GapTable((0.0, 400.0), (0.5, -1.0)),
     '{ radius = "50 cm", station = 50 }': RoundGap(500.0, 50.0, 0.0),
-    '{ radius = "-50 cm", station = 50, least = "1 mm" }': RoundGap(-500.0, 50.0, 1.0),
+    '{ radius = "-50 m", station = 50, least = "1 mm" }': RoundGap(-50e3, 50.0, 1.0),
 }
 
 
