@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
     from cases.case import Case
+    from reports.cache import Cache
     from reports.runner import CaseRun, Failure
     from reports.stability.registry import Stability
     from reports.verification.check import Outcome
@@ -42,6 +43,7 @@ schema_app = App(name="schema", help="Print a JSON Schema.")
 app.command(schema_app)
 
 Level = Annotated[int | None, Parameter(validator=validators.Number(gte=1, lte=12))]
+NoCache = Annotated[bool, Parameter(name="--no-cache", negative=())]
 Order = Annotated[int | None, Parameter(validator=validators.Number(gte=2, lte=20))]
 
 
@@ -137,42 +139,50 @@ def solve(
 
 
 @app.command
-def compare(*cases: str) -> int:
+def compare(*cases: str, cache: Path | None = None, no_cache: NoCache = False) -> int:
     """Solve cases both ways and print how far apart the answers are.
+
+    What the same code has answered before is taken from the cache, with the seconds it took then, and says so.
 
     Parameters
     ----------
     cases : names of cases of the library, or paths of case files
+    cache : folder of results; without it, rodcheck in $XDG_CACHE_HOME or ~/.cache
+    no_cache : compute everything, and keep nothing
     """
     if not cases:
         raise InputError("compare: name at least one case; `rodcheck list` prints those of the library")
     from reports.tables import print_comparison
 
-    runs = _run_all(_load_all(cases))
+    runs = _run_all(_load_all(cases), _cache(cache, no_cache))
     for run in runs:
         print_comparison(run)
     return _exit_code(runs)
 
 
 @app.command
-def report(*cases: str, output: Path = Path("report")) -> int:
+def report(*cases: str, output: Path = Path("report"), cache: Path | None = None, no_cache: NoCache = False) -> int:
     """Solve cases both ways and write one self-contained page, with the results as JSON beside it.
 
-    With the whole library come the pages of verification, performance and stability.
+    With the whole library come the pages of verification, performance and stability. What the same code has answered
+    before is taken from the cache, with the seconds it took then, and says so; these three pages never are.
 
     Parameters
     ----------
     cases : names of cases of the library, or paths of case files; without any, the whole library
     output : folder for index.html and the results
+    cache : folder of results; without it, rodcheck in $XDG_CACHE_HOME or ~/.cache
+    no_cache : compute everything, and keep nothing
     """
     from cases.loader import library_names
 
     loaded = _load_all(cases or library_names())
     _require_folder(output)
+    results = _cache(cache, no_cache)
     from reports.runner import Failure
     from reports.site import write_report
 
-    runs = _run_all(loaded)
+    runs = _run_all(loaded, results)
     outcomes = None if cases else _verification_outcomes()
     verification = None if outcomes is None else _write_verification(outcomes, output)
     performance = None if cases else _write_performance(output)
@@ -342,10 +352,31 @@ def _load_all(names: Sequence[str]) -> list[Case]:
     return cases
 
 
-def _run_all(cases: Sequence[Case]) -> list[CaseRun | Failure]:
-    from reports.progress import run_with_progress
+def _cache(folder: Path | None, none: bool) -> Cache | None:
+    """The cache to use."""
+    from reports.cache import Cache, default_folder
 
-    return run_with_progress(cases)
+    if none:
+        if folder is not None:
+            raise InputError("--cache: found with --no-cache; give one of the two")
+        return None
+    if folder is not None and folder.exists() and not folder.is_dir():
+        raise InputError(f"--cache: found the file {folder}; give a folder")
+    try:
+        return Cache(default_folder() if folder is None else folder)
+    except RuntimeError as error:
+        raise InputError("--cache: found no home folder to keep results in; give a folder, or --no-cache") from error
+
+
+def _run_all(cases: Sequence[Case], cache: Cache | None) -> list[CaseRun | Failure]:
+    from reports.progress import run_with_progress
+    from reports.runner import CaseRun
+
+    runs = run_with_progress(cases, cache)
+    notes = [note for run in runs if isinstance(run, CaseRun) for note in run.notes]
+    for note in dict.fromkeys(notes):
+        print(f"rodcheck: {note}", file=sys.stderr)
+    return runs
 
 
 def _exit_code(runs: Sequence[CaseRun | Failure]) -> int:

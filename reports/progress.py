@@ -9,6 +9,7 @@ from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 
 from cases.case import Case
+from reports.cache import Cache
 from reports.runner import STEPS, CaseRun, Failure, run_cases
 
 
@@ -17,7 +18,7 @@ def status(text: str) -> AbstractContextManager[object]:
     return Console(stderr=True).status(text)
 
 
-def run_with_progress(cases: Sequence[Case]) -> list[CaseRun | Failure]:
+def run_with_progress(cases: Sequence[Case], cache: Cache | None = None) -> list[CaseRun | Failure]:
     """Run cases one after the other behind a progress bar."""
     console = Console(stderr=True)
     columns = (
@@ -34,7 +35,7 @@ def run_with_progress(cases: Sequence[Case]) -> list[CaseRun | Failure]:
             bars.advance(task)
 
         runs = []
-        for index, run in enumerate(run_cases(cases, begun), start=1):
+        for index, run in enumerate(run_cases(cases, begun, cache), start=1):
             bars.update(task, completed=STEPS * index)
             runs.append(run)
     return runs

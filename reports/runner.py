@@ -1,7 +1,7 @@
 """Run cases: the rod model, the 3D reference on three meshes, and everything they are held against.
 
 Every case runs in a process of its own, so that its peak memory can be told and a case that fails, or is
-killed, never stops the others.
+killed, never stops the others. What the same code has answered before, a cache may tell.
 """
 
 from __future__ import annotations
@@ -11,14 +11,17 @@ import time
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
+from inspect import getsource
 
 from cases.case import Case, Grades
 from cases.scene import SceneError
+from reports.cache import Cache
 from reports.case_comparison import case_comparisons, comparisons_without_reference, evaluation_points
+from reports.code_version import code_version
 from reports.comparison import Comparison, Extrapolation
 from reports.memory import peak_memory
-from reports.processes import ProcessFailed, Progress, in_own_process
-from reports.quantities import Quantities, evaluate
+from reports.processes import ProcessFailed, Progress, failure_reason, in_own_process
+from reports.quantities import ContactQuantities, PressureProfile, Quantities, RodQuantities, evaluate
 from reports.solution import Model
 
 # The rod model answers in milliseconds; its seconds are the median of this many runs.
@@ -36,6 +39,8 @@ class Run:
     level, order : of the rod model; None for the 3D reference
     total_seconds : wall-clock time from the scene to all quantities
     peak_memory : largest resident memory of the process so far, MB
+    kept_since : the day it was computed on, YYYY-MM-DD, if it comes from the cache, with the seconds and the memory of
+        then; else ''
     """
 
     model: Model
@@ -44,6 +49,24 @@ class Run:
     quantities: Quantities
     total_seconds: float
     peak_memory: float
+    kept_since: str = ""
+
+    @property
+    def origin(self) -> str:
+        """Words to add where it comes from the cache."""
+        return f", from the cache, computed on {self.kept_since}" if self.kept_since else ""
+
+
+@dataclass(frozen=True)
+class ReferenceRuns:
+    """The 3D reference on three meshes, coarse to fine, and their representative element sizes, mm."""
+
+    runs: tuple[Run, ...]
+    sizes: tuple[float, ...]
+
+
+# What results on disk are made of.
+KINDS = (Run, ReferenceRuns, Quantities, ContactQuantities, PressureProfile, RodQuantities)
 
 
 @dataclass(frozen=True)
@@ -54,6 +77,7 @@ class CaseRun:
     ----------
     references : of the 3D reference on three meshes, coarse to fine; none where it cannot treat the scene
     refusal : then why, in one sentence; else ''
+    notes : what the user should know of the cache, a sentence each
     """
 
     case: Case
@@ -61,6 +85,7 @@ class CaseRun:
     references: tuple[Run, ...]
     comparisons: tuple[Comparison, ...]
     refusal: str = ""
+    notes: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -116,8 +141,12 @@ def run_reference(case: Case) -> Run:
     return Run("reference", None, None, quantities, time.perf_counter() - begin, peak_memory())
 
 
-def run_case(case: Case, progress: Progress) -> CaseRun:
+def run_case(case: Case, progress: Progress, cache: Cache | None = None) -> CaseRun:
     """Solve a case both ways and compare; `progress` is told what begins.
+
+    Parameters
+    ----------
+    cache : where answers are looked for and kept; without one, everything is computed
 
     Raises
     ------
@@ -126,31 +155,76 @@ def run_case(case: Case, progress: Progress) -> CaseRun:
     """
     import reference3d
 
-    progress("rod model")
-    rod = run_rod(case, repeats=ROD_REPEATS)
+    rod = _kept_rod(case, cache)
+    if rod is None:
+        progress("rod model")
+        rod = run_rod(case, repeats=ROD_REPEATS)
+        if cache is not None:
+            cache.keep("rod", _rod_question(case), rod)
 
-    points = evaluation_points(case)
-    try:
-        solutions = reference3d.solve_sequence(case.scene, lambda done, of: progress(f"3D mesh {done + 1} of {of}"))
-    except SceneError as error:
-        return CaseRun(case, rod, (), comparisons_without_reference(case, rod.quantities), str(error))
+    references = _kept_references(case, cache)
+    if references is None:
+        try:
+            references = _run_references(case, progress)
+        except SceneError as error:
+            alone = comparisons_without_reference(case, rod.quantities)
+            return CaseRun(case, rod, (), alone, str(error), _notes(cache))
+        if cache is not None:
+            cache.keep("reference", _reference_question(case), references)
+
     progress("comparison")
-    references = []
-    for solution in solutions:
-        begin = time.perf_counter()
-        quantities = evaluate(solution, points.stations, points.stress_points)
-        total = solution.cost.setup_seconds + solution.cost.solve_seconds + time.perf_counter() - begin
-        references.append(Run("reference", None, None, quantities, total, peak_memory()))
-
-    coarse, medium, fine = (solution.representative_size for solution in solutions)
+    coarse, medium, fine = references.sizes
     order = reference3d.formal_order(case.scene)
 
     def extrapolate(first: float, second: float, third: float) -> Extrapolation:
         found = reference3d.grid_convergence((first, second, third), (coarse, medium, fine), order)
         return Extrapolation(found.extrapolated, found.uncertainty, found.observed_order if found.asymptotic else None)
 
-    comparisons = case_comparisons(case, rod.quantities, [run.quantities for run in references], extrapolate)
-    return CaseRun(case, rod, tuple(references), comparisons)
+    comparisons = case_comparisons(case, rod.quantities, [run.quantities for run in references.runs], extrapolate)
+    return CaseRun(case, rod, references.runs, comparisons, notes=_notes(cache))
+
+
+def _run_references(case: Case, progress: Progress) -> ReferenceRuns:
+    import reference3d
+
+    points = evaluation_points(case)
+    solutions = reference3d.solve_sequence(case.scene, lambda done, of: progress(f"3D mesh {done + 1} of {of}"))
+    runs = []
+    for solution in solutions:
+        begin = time.perf_counter()
+        quantities = evaluate(solution, points.stations, points.stress_points)
+        total = solution.cost.setup_seconds + solution.cost.solve_seconds + time.perf_counter() - begin
+        runs.append(Run("reference", None, None, quantities, total, peak_memory()))
+    return ReferenceRuns(tuple(runs), tuple(solution.representative_size for solution in solutions))
+
+
+def _rod_question(case: Case) -> tuple[object, ...]:
+    """All that the rod model's answer to a case depends on."""
+    code = code_version("rodmodel", "reports.quantities"), getsource(Run), getsource(run_rod)
+    return code, case.scene, case.rod_model, evaluation_points(case), ROD_REPEATS
+
+
+def _reference_question(case: Case) -> tuple[object, ...]:
+    """All that the 3D reference's answer to a case depends on; the meshes are a matter of its code."""
+    code = code_version("reference3d", "reports.quantities"), getsource(Run), getsource(_run_references)
+    return code, case.scene, evaluation_points(case)
+
+
+def _kept_rod(case: Case, cache: Cache | None) -> Run | None:
+    kept = None if cache is None else cache.find("rod", _rod_question(case), KINDS)
+    return None if kept is None else replace(kept.value, kept_since=kept.date)
+
+
+def _kept_references(case: Case, cache: Cache | None) -> ReferenceRuns | None:
+    kept = None if cache is None else cache.find("reference", _reference_question(case), KINDS)
+    if kept is None:
+        return None
+    found: ReferenceRuns = kept.value
+    return replace(found, runs=tuple(replace(run, kept_since=kept.date) for run in found.runs))
+
+
+def _notes(cache: Cache | None) -> tuple[str, ...]:
+    return () if cache is None else tuple(cache.notes)
 
 
 def passed(run: CaseRun | Failure) -> bool:
@@ -162,10 +236,22 @@ def passed(run: CaseRun | Failure) -> bool:
     )
 
 
-def run_cases(cases: Sequence[Case], progress: Callable[[Case, str], None]) -> Iterator[CaseRun | Failure]:
-    """Run cases one after the other, each in its own process; a failure is yielded, not raised."""
+def run_cases(
+    cases: Sequence[Case], progress: Callable[[Case, str], None], cache: Cache | None = None
+) -> Iterator[CaseRun | Failure]:
+    """Run cases one after the other; a failure is yielded, not raised.
+
+    Each is solved in its own process; one whose answers the cache holds needs none.
+    """
+    if cache is not None:
+        cache.clean()
     for case in cases:
         try:
-            yield in_own_process(run_case, case, partial(progress, case))
+            if _kept_rod(case, cache) is None or _kept_references(case, cache) is None:
+                yield in_own_process(partial(run_case, cache=cache), case, partial(progress, case))
+            else:
+                yield run_case(case, partial(progress, case), cache)
         except ProcessFailed as error:
             yield Failure(case, str(error))
+        except Exception as error:  # noqa: BLE001 (whatever went wrong, the next case is to be run)
+            yield Failure(case, failure_reason(error))

@@ -298,7 +298,7 @@ def _cost_row(solver: str, answer: Run) -> dict[str, str]:
         "penetration": f"{max((contact.penetration for contact in quantities.contacts), default=0.0):.1e} mm",
         "complementarity": f"{max((each.complementarity_residual for each in quantities.contacts), default=0.0):.1e}",
         "contact_work": f"{sum(contact.work for contact in quantities.contacts):.1e} N mm",
-        "outcome": quantities.outcome,
+        "outcome": quantities.outcome + answer.origin,
     }
 
 

@@ -28,7 +28,7 @@ def solved(monkeypatch: pytest.MonkeyPatch):
     """Answer `compare` and `report` with given runs instead of solving."""
 
     def answer(*runs: CaseRun | Failure) -> None:
-        monkeypatch.setattr("reports.progress.run_cases", lambda _cases, _progress: iter(runs))
+        monkeypatch.setattr("reports.progress.run_cases", lambda *_: iter(runs))
 
     return answer
 
@@ -48,6 +48,8 @@ def solved(monkeypatch: pytest.MonkeyPatch):
         ["solve", CASE, CASE],
         ["compare"],
         ["compare", CASE, CASE],
+        ["compare", CASE, "--cache", __file__],
+        ["report", CASE, "--no-cache", "--cache", "folder"],
         ["compare", CASE, "no-such-case"],
         ["report", "no-such-case"],
         ["schema", "nothing"],

@@ -293,7 +293,7 @@ def test_a_measurement_that_failed_is_one_sentence_and_leaves_no_page(
 def test_the_report_of_the_whole_library_links_to_the_performance_page(
     case_run, performance: Performance, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("reports.progress.run_cases", lambda _cases, _progress: iter([case_run]))
+    monkeypatch.setattr("reports.progress.run_cases", lambda *_: iter([case_run]))
     monkeypatch.setattr("reports.site.in_own_process", lambda *_: (_ for _ in ()).throw(ProcessFailed("not drawn")))
     monkeypatch.setattr("reports.performance.measure.measure", lambda: performance)
     monkeypatch.setattr(command_line, "_verification_outcomes", lambda: None)

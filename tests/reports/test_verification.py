@@ -273,7 +273,7 @@ def test_verify_refuses_a_file_as_its_folder(tmp_path: Path, capsys: pytest.Capt
 def test_the_report_of_the_whole_library_links_to_the_verification_page(
     case_run, outcomes: dict[str, Outcome], answered, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("reports.progress.run_cases", lambda _cases, _progress: iter([case_run]))
+    monkeypatch.setattr("reports.progress.run_cases", lambda *_: iter([case_run]))
     monkeypatch.setattr("reports.site.in_own_process", lambda *_: (_ for _ in ()).throw(ProcessFailed("not drawn")))
     monkeypatch.setattr(command_line, "_write_performance", lambda _output: tmp_path / "performance.html")
     monkeypatch.setattr(command_line, "_stability", lambda: None)
