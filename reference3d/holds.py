@@ -1,4 +1,4 @@
-"""What supports and joints hold of a solid rod's planes of nodes, and whether that holds it against every motion."""
+"""What supports and joints hold of a solid rod's planes of nodes, and which rigid motions that leaves free."""
 
 from __future__ import annotations
 
@@ -15,6 +15,7 @@ from reference3d.section_mesh import face_edges
 from reference3d.solid_body import SolidBody
 
 Array = NDArray[np.float64]
+IntArray = NDArray[np.int64]
 
 # share of the largest singular value below which a rigid motion counts as free
 FREE = 1e-7
@@ -73,11 +74,20 @@ def joint_point(scene: Scene, joint: int) -> Array:
 
 def rigid_motions(body: SolidBody, border: int, pole: Array) -> Array:
     """Unknowns of a plane under unit motions along and about global X, Y, Z through a pole, shape (m, 6)."""
-    axes, nodes = body.axes[2 * border], body.section.nodes
-    arm = body.points[2 * border] - pole + nodes @ axes[:2]
-    turned = np.cross(np.eye(3)[None], arm[:, None])  # node, rotation axis, component
-    moved = np.concatenate([np.broadcast_to(np.eye(3), turned.shape), turned], axis=1)
-    return np.asarray(np.einsum("nmc,bc->nbm", moved, axes).reshape(-1, 6))
+    return _rigid(body, np.array([2 * border]), pole).reshape(-1, 6)
+
+
+def rigid_field(body: SolidBody, pole: Array) -> Array:
+    """All unknowns of a rod under these motions, shape (n_planes, n_nodes, 3, 6)."""
+    return _rigid(body, np.arange(len(body.points)), pole)
+
+
+def _rigid(body: SolidBody, planes: IntArray, pole: Array) -> Array:
+    axes = body.axes[planes]
+    arm = body.points[planes][:, None] - pole + body.section.nodes @ axes[:, :2]
+    turned = np.cross(np.eye(3), arm[:, :, None])  # plane, node, rotation axis, component
+    moved = np.concatenate([np.broadcast_to(np.eye(3), turned.shape), turned], axis=2)
+    return np.asarray(np.einsum("pnmc,pbc->pnbm", moved, axes))
 
 
 def _held_by(support: Support, body: SolidBody) -> tuple[HeldPlane, Array]:
@@ -90,6 +100,24 @@ def _held_by(support: Support, body: SolidBody) -> tuple[HeldPlane, Array]:
         return HeldPlane(None, fixed.ravel()), values.ravel()
     rows = body.integrals.mean_motion()[numbers].reshape(len(numbers), -1)
     return combinations_held(rows), np.linalg.pinv(rows) @ np.array(wanted)
+
+
+@dataclass(frozen=True, eq=False)
+class Loose:
+    """Rods, joined or one alone, that supports, joints and beds leave free to move as a rigid body.
+
+    Attributes
+    ----------
+    rods : their names
+    centre : a point, global, mm, shape (3,)
+    motions : the free motions: displacement of `centre` and rotation, mm and rad, rows, shape (n_free, 6)
+    alone : whether it is one rod without joints
+    """
+
+    rods: tuple[str, ...]
+    centre: Array
+    motions: Array
+    alone: bool
 
 
 def require_held(
@@ -108,23 +136,77 @@ def require_held(
         if one can; it names the rods and the motion.
     """
     for names in structures:
-        centre = np.mean([bodies[name].points.mean(axis=0) for name in sorted(names)], axis=0)
-        size = max(bodies[name].rod.length for name in names)
-        scale = np.repeat([1.0, 1.0 / size], 3)
-        rows = [np.zeros((6, 6))]
-        for name in names:
-            body = bodies[name]
-            for hold in held[name].values():
-                if hold.joint is None:
-                    motions = rigid_motions(body, hold.border, centre)
-                    in_basis = motions if hold.plane.basis is None else hold.plane.basis.T @ motions
-                    rows.append(in_basis[hold.plane.fixed] * scale)
-            rows += [each * scale for each in _resisted_by_beds(scene, body, centre)]
-        _, values, vectors = np.linalg.svd(np.concatenate(rows))
-        free = vectors[values <= FREE * values[0]]
-        if len(free):
-            found = f"nothing that holds {', '.join(repr(name) for name in sorted(names))} against {_in_words(free)}"
-            raise SceneError("supports", found, "hold it by supports, joints or beds, or its stiffness is singular")
+        loose = _loose(scene, bodies, held, names, np.eye(6))
+        if loose is not None:
+            raise _not_held(loose, "hold it by supports, joints or beds, or its stiffness is singular")
+
+
+def loose_rods(
+    scene: Scene,
+    bodies: Mapping[str, SolidBody],
+    held: Mapping[str, Mapping[int, Hold]],
+    possible: Array,
+) -> tuple[Loose, ...]:
+    """Rods, with those joined to them, that can move as a rigid body where contact does not hinder them.
+
+    possible : rows of displacement and rotation that the scene's symmetry leaves, shape (n, 6)
+
+    Raises
+    ------
+    SceneError
+        if one takes part in no contact; it names the rods and the motion.
+    """
+    touching = {face.rod for pair in scene.contacts for face in pair.faces}
+    found = []
+    for names in structures(scene):
+        loose = _loose(scene, bodies, held, names, possible)
+        if loose is not None and not names & touching:
+            raise _not_held(loose, "hold it by supports, joints, beds or contact, or its stiffness is singular")
+        if loose is not None:
+            found.append(loose)
+    return tuple(found)
+
+
+def _not_held(loose: Loose, remedy: str) -> SceneError:
+    names = ", ".join(repr(name) for name in loose.rods)
+    return SceneError("supports", f"nothing that holds {names} against {_in_words(loose)}", remedy)
+
+
+def _loose(
+    scene: Scene,
+    bodies: Mapping[str, SolidBody],
+    held: Mapping[str, Mapping[int, Hold]],
+    names: set[str],
+    possible: Array,
+) -> Loose | None:
+    """What supports, joints and beds leave free of the possible motions of rods that are joined; None if nothing."""
+    centre = np.mean([bodies[name].points.mean(axis=0) for name in sorted(names)], axis=0)
+    size = max(bodies[name].rod.length for name in names)
+    # rotations in units of 1 / size, so that both kinds of motion displace alike
+    scale = np.repeat([1.0, 1.0 / size], 3)
+    rows = [np.zeros((6, 6))]
+    alone = True
+    for name in names:
+        body = bodies[name]
+        for hold in held[name].values():
+            alone &= hold.joint is None
+            if hold.joint is None:
+                motions = rigid_motions(body, hold.border, centre)
+                in_basis = motions if hold.plane.basis is None else hold.plane.basis.T @ motions
+                rows.append(in_basis[hold.plane.fixed] * scale)
+        rows += [each * scale for each in _resisted_by_beds(scene, body, centre)]
+    _, values, vectors = np.linalg.svd(np.concatenate(rows) @ possible.T, full_matrices=False)
+    free = vectors[values <= FREE * values[0]] @ possible
+    return Loose(tuple(sorted(names)), centre, free * scale, alone) if len(free) else None
+
+
+def stay(body: SolidBody, held: Mapping[int, Hold], loose: Loose) -> Hold:
+    """Hold of one more section of a loose rod, an end if it can be: of the mean motions that are free."""
+    border = next(each for each in (0, len(body.kind), *range(1, len(body.kind))) if each not in held)
+    functionals = body.integrals.mean_motion().reshape(6, -1)
+    free = functionals @ rigid_motions(body, border, loose.centre) @ loose.motions.T
+    size = functionals.shape[1]
+    return Hold(border, combinations_held(free.T @ functionals), np.zeros(size), None, np.empty((size, 0)))
 
 
 def _resisted_by_beds(scene: Scene, body: SolidBody, centre: Array) -> list[Array]:
@@ -140,22 +222,21 @@ def _resisted_by_beds(scene: Scene, body: SolidBody, centre: Array) -> list[Arra
             planes = np.arange(2 * layer, 2 * layer + 3)
             position, axes = body.points[planes], body.axes[planes]
             points = face_points(body.section, edges, bed.face.face, position, axes, zeta, eta)
-            arm = position[:, None] - centre + body.section.nodes @ axes[:, :2]
-            turned = np.cross(np.eye(3), arm[:, :, None])
-            moved = np.concatenate([np.broadcast_to(np.eye(3), turned.shape), turned], axis=2)
-            local = np.einsum("pnmc,pbc->pnbm", moved, axes)
+            local = _rigid(body, planes, centre)
             nodal = local[:, edges].transpose(1, 0, 2, 3, 4).reshape(len(edges), 27, 6)
             found.append((normal_rows(points, axes) @ nodal).reshape(-1, 6))
     return found
 
 
-def _in_words(free: Array) -> str:
-    """One of the free motions, rows of displacement and rotation: a displacement if there is one, else a turn."""
-    _, values, vectors = np.linalg.svd(free[:, 3:].T)
-    without_turn = vectors[int((values > FREE).sum()) :]
+def _in_words(loose: Loose) -> str:
+    """One of the free motions: a displacement if there is one, else a turn."""
+    moved, turned = np.split(loose.motions, 2, axis=1)
+    _, values, vectors = np.linalg.svd(turned.T)
+    # of a turn by an angle that moves the ends by less than this, over their displacement, nothing is seen
+    without_turn = vectors[int((values > FREE * np.abs(loose.motions).max()).sum()) :]
     if len(without_turn):
-        return f"moving along {_shown(without_turn[0] @ free[:, :3])}"
-    return f"turning about {_shown(vectors[0] @ free[:, 3:])}"
+        return f"moving along {_shown(without_turn[0] @ moved)}"
+    return f"turning about {_shown(vectors[0] @ turned)}"
 
 
 def _shown(vector: Array) -> str:

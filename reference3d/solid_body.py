@@ -10,6 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.sparse import csr_array
 
 from cases.scene import Bed, Gravity, LineLoad, Load, Pressure, Rod, Scene, SectionForce, SectionMoment
 from reference3d.centre_line import frames, points, stretches
@@ -71,19 +72,30 @@ class SolidBody:
         """Number of the layer border at an arc length, where something acts or holds."""
         return int(np.argmin(np.abs(self.borders - station)))
 
-    def layer_matrix(self, kind: int) -> Array:
-        """Stiffness of the layers of a kind, beds included, start, middle and end plane; N/mm, shape (3 m, 3 m)."""
-        count = len(self.section.nodes)
-        matrix = np.zeros((9 * count, 9 * count))
-        plane = count * np.arange(3)[:, None]
-        for quad, stiffness in zip(self.section.quads, self.layers[kind].stiffness, strict=True):
-            unknown = _unknowns(plane + quad)
-            matrix[unknown[:, None], unknown] += stiffness
-        for springs in self.springs[kind]:
-            for edge, stiffness in zip(springs.edges, springs.stiffness, strict=True):
-                unknown = _unknowns(plane + edge)
-                matrix[unknown[:, None], unknown] += stiffness
-        return matrix
+    def layer_matrix(self, kind: int, motions: csr_array | None = None) -> Array:
+        """Stiffness of the layers of a kind, beds included, on their start, middle and end plane; N/mm.
+
+        motions : of a plane that are possible, orthonormal columns with one entry a row at most, shape (m, n); all
+            unknowns if None. The result has shape (3 n, 3 n).
+        """
+        count = 3 * len(self.section.nodes)
+        size, column, value = count, np.arange(count), np.ones(count)
+        if motions is not None:
+            size, column, value = motions.shape[1], np.zeros(count, dtype=np.int64), np.zeros(count)
+            rows, columns = motions.tocoo().coords
+            column[rows], value[rows] = columns, motions.tocoo().data
+        matrix = np.zeros(9 * size * size)
+        for nodes, matrices in (
+            (self.section.quads, self.layers[kind].stiffness),
+            *((springs.edges, springs.stiffness) for springs in self.springs[kind]),
+        ):
+            unknown = (3 * nodes[:, None, :, None] + np.arange(3)).repeat(3, axis=1).reshape(len(nodes), -1)
+            place = column[unknown] + size * np.repeat(np.arange(3), unknown.shape[1] // 3)
+            share = value[unknown]
+            entry = 3 * size * place[:, :, None] + place[:, None, :]
+            scaled = matrices * share[:, :, None] * share[:, None, :]
+            matrix += np.bincount(entry.ravel(), scaled.ravel(), 9 * size * size)
+        return matrix.reshape(3 * size, 3 * size)
 
     def internal_forces(self, displacement: Array) -> tuple[Array, Array]:
         """Nodal forces that the solid and that the beds need for a displacement; arrays of unknowns."""
@@ -101,10 +113,6 @@ class SolidBody:
         moved = displacement[place].reshape(len(planes), len(nodes), -1)
         found = np.einsum("eij,lej->lei", matrices, moved, optimize=True)
         np.add.at(force, place, found.reshape(len(planes), len(nodes), 3, -1, 3))
-
-
-def _unknowns(nodes: IntArray) -> IntArray:
-    return np.asarray((3 * nodes.reshape(-1, 1) + np.arange(3)).ravel())
 
 
 def solid_body(scene: Scene, rod: Rod, refinement: int) -> SolidBody:

@@ -66,7 +66,7 @@ def solve(
     Raises
     ------
     SceneError
-        if a rod is held by nothing but contact, nothing lies opposite a face that may touch, Poisson's ratio is next
+        if nothing holds a rod, contact included, nothing lies opposite a face that may touch, Poisson's ratio is next
         to 0.5, or the machine's memory is too small.
     ValueError
         if `refinement` is below 1.

@@ -311,9 +311,20 @@ def test_rods_joined_to_a_held_one_need_no_support_of_their_own_and_others_are_r
 
 def test_a_rod_that_can_only_turn_is_refused_with_the_axis():
     supports = (Support("rod", 0.0, ("x", "y", "s"), "mean"), Support("rod", 200.0, ("x", "y"), "mean"))
+    aside = SectionForce("rod", 100.0, (0.0, -10.0, 10.0))
 
     with pytest.raises(SceneError, match=r"nothing that holds 'rod' against turning about \(1, 0, 0\)"):
-        solve(one_rod(ALONG_X, SQUARE, (), supports=supports), 1)
+        solve(one_rod(ALONG_X, SQUARE, (aside,), supports=supports), 1)
+
+
+def test_motions_out_of_the_plane_in_which_all_of_a_scene_lies_need_no_support():
+    supports = (Support("rod", 0.0, ("x", "y", "s"), "mean"), Support("rod", 200.0, ("x", "y"), "mean"))
+    down = SectionForce("rod", 100.0, (0.0, -10.0, 0.0))
+
+    solution = solve(one_rod(ALONG_X, SQUARE, (down,), supports=supports), 1)
+
+    assert solution.outcome == "converged"
+    np.testing.assert_allclose(solution.reaction("rod", 0.0)[:3], [0.0, 5.0, 0.0], atol=1e-6)
 
 
 def bed_scene(length, load, line=None):
