@@ -7,11 +7,12 @@
 made.
 """
 
-from reference3d.sequence import REFINEMENTS, formal_order, solve_sequence
+from reference3d.sequence import REFINEMENTS, solve_sequence
+from reference3d.singularities import clamp_singularity_exponent, contact_corner_exponent, formal_order
 from reference3d.solid_solution import SolidSolution
 from reference3d.solution import Solution
 from reference3d.solver import DEFAULT_REFINEMENT, solve
-from reference3d.uncertainty import GridConvergence, clamp_singularity_exponent, grid_convergence
+from reference3d.uncertainty import GridConvergence, grid_convergence
 
 __all__ = [
     "DEFAULT_REFINEMENT",
@@ -20,6 +21,7 @@ __all__ = [
     "SolidSolution",
     "Solution",
     "clamp_singularity_exponent",
+    "contact_corner_exponent",
     "formal_order",
     "grid_convergence",
     "solve",

@@ -1,6 +1,7 @@
 """Where the planes of nodes of any rod lie along its centre line: layers graded towards what holds and loads it.
 
-As in `grading`, coarse cells grow away from the places that need short ones, and refinement k divides each into k.
+As in `grading`, coarse cells grow away from the places that need short ones, and refinement k divides each into k,
+unequally next to those places.
 """
 
 from __future__ import annotations
@@ -97,7 +98,7 @@ def layer_borders(scene: Scene, rod: Rod, refinement: int) -> Array:
         cap = np.minimum(largest, LARGEST_TURN / np.maximum(rate, LARGEST_TURN / largest))
         middle = 0.5 * (start + end)
         cap = np.minimum(cap, min((size for begin, stop, size in close if begin < middle < stop), default=largest))
-        parts.append(segment_borders(start, end, breaks[start], breaks[end], cap, refinement)[1:])
+        parts.append(segment_borders((start, end), (breaks[start], breaks[end]), cap, largest, refinement)[1:])
     return np.concatenate(parts)
 
 

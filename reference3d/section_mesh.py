@@ -17,7 +17,7 @@ from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
 from cases.scene import Box, Circle, Face, Polygon, Rectangle, Ring, Section
-from reference3d.grading import SECTION_GRADING
+from reference3d.grading import denser_at_one
 from reference3d.quadratic import line_nodes, shape_derivatives, shape_functions
 
 Array = NDArray[np.float64]
@@ -160,9 +160,9 @@ def _rectangle(section: Rectangle, refinement: int) -> Array:
 
 
 def _across(extent: float, count: int) -> Array:
-    """Borders of elements that get finer towards both sides, by a smooth map; mm, shape (count + 1,)."""
+    """Borders of elements that get finer towards both sides, as in `grading`; mm, shape (count + 1,)."""
     at = np.linspace(-1.0, 1.0, count + 1)
-    return np.asarray(0.5 * extent * (at + SECTION_GRADING * np.sin(np.pi * at) / np.pi))
+    return np.asarray(0.5 * extent * np.sign(at) * denser_at_one(np.abs(at)))
 
 
 def _box(section: Box, refinement: int) -> list[Array]:

@@ -33,8 +33,9 @@ class GridConvergence:
     asymptotic : True if constant, or monotone with an observed order of at least half the formal one; only
         then is the band a grid convergence index with factor 1.25
     observed_order : p, nan unless monotone
-    extrapolated : limit for vanishing mesh size with the order used; `value` unless asymptotic
-    uncertainty : half width of the band about `value` in which the limit is expected, in the quantity's unit
+    extrapolated : limit for vanishing mesh size with the observed order; `value` unless asymptotic
+    uncertainty : half width of the band about `value`, and about `extrapolated`, in which the limit is expected, in the
+        quantity's unit
     """
 
     value: float
@@ -50,9 +51,11 @@ def grid_convergence(
 ) -> GridConvergence:
     """Convergence of one quantity over three meshes.
 
-    An observed order above the formal one is not trusted: the index then uses the formal order. Where the
-    sequence oscillates, diverges or converges at less than half the formal order, the band is three times the
-    largest change between any two of the meshes, and nothing is extrapolated.
+    An observed order above the formal one is not trusted, as it comes from a last change that is small by chance: the
+    index then uses the formal order, and of the errors on the finest mesh that either change implies the larger one.
+    The limit is extrapolated with the observed order, so that such a last change hardly moves it.
+    Where the sequence oscillates, diverges or converges at less than half the formal order, the band is three times
+    the largest change between any two of the meshes, and nothing is extrapolated.
 
     Parameters
     ----------
@@ -84,9 +87,18 @@ def grid_convergence(
         return GridConvergence(fine, "diverging", False, math.nan, fine, conservative)
     if order < 0.5 * formal_order:
         return GridConvergence(fine, "monotone", False, order, fine, conservative)
-    correction = -second / ((sizes[1] / sizes[2]) ** min(order, formal_order) - 1.0)
-    uncertainty = SAFETY_ASYMPTOTIC * abs(correction)
-    return GridConvergence(fine, "monotone", True, order, fine + correction, uncertainty)
+    trusted = min(order, formal_order)
+    errors = (
+        _implied_error(first, sizes[0] / sizes[2], sizes[1] / sizes[2], trusted),
+        _implied_error(second, sizes[1] / sizes[2], 1.0, trusted),
+    )
+    extrapolated = fine - _implied_error(second, sizes[1] / sizes[2], 1.0, order)
+    return GridConvergence(fine, "monotone", True, order, extrapolated, SAFETY_ASYMPTOTIC * max(map(abs, errors)))
+
+
+def _implied_error(change: float, larger: float, smaller: float, order: float) -> float:
+    """Error on the finest mesh that the change between two meshes implies at an order; sizes over the finest one."""
+    return float(change / (larger**order - smaller**order))
 
 
 def _observed_order(first: float, second: float, sizes: tuple[float, float, float]) -> float:
@@ -105,20 +117,3 @@ def _observed_order(first: float, second: float, sizes: tuple[float, float, floa
     if mismatch(HIGHEST_ORDER) >= 0.0:
         return HIGHEST_ORDER
     return float(brentq(mismatch, LOWEST_ORDER, HIGHEST_ORDER, xtol=1e-12))
-
-
-def clamp_singularity_exponent(poisson_ratio: float) -> float:
-    """Exponent lambda of the displacement r^lambda at the edge where a free face meets a clamp at 90 degrees.
-
-    Smallest root of (3 - 4 nu) sin^2(lambda pi / 2) = 4 (1 - nu)^2 - lambda^2 (M. L. Williams, Journal of
-    Applied Mechanics 19 (1952) 526-528, plane strain); 0.711 for nu = 0.3. It is 1 (no singularity)
-    for nu = 0.
-    """
-
-    def mismatch(exponent: float) -> float:
-        left = (3.0 - 4.0 * poisson_ratio) * math.sin(0.5 * math.pi * exponent) ** 2
-        return left + exponent**2 - 4.0 * (1.0 - poisson_ratio) ** 2
-
-    if mismatch(1.0) <= 0.0:
-        return 1.0
-    return float(brentq(mismatch, 0.0, 1.0, xtol=1e-14))
