@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from cases.case import Case
     from reports.cache import Cache
     from reports.runner import CaseRun, Failure
+    from reports.solution import Solution
     from reports.stability.registry import Stability
     from reports.verification.check import Outcome
 
@@ -100,6 +101,7 @@ def solve(
     model: Literal["rod", "reference"] = "rod",
     level: Level = None,
     order: Order = None,
+    vtu: Path | None = None,
     json: Annotated[bool, Parameter(name="--json", negative=())] = False,
 ) -> int:
     """Solve a case with one of the two models.
@@ -110,6 +112,8 @@ def solve(
     model : the rod model, or the 3D reference
     level : k of the rod model h_k, 1 to 12; the case file's where it is not given
     order : order p of the rod model along the rods, 2 to 20; the case file's where it is not given
+    vtu : file, ending in .vtu, for displacement and stress of the bodies (stress and von_mises in global axes, stress_s
+        along the rods; N, mm, MPa); points of contact go to NAME-contact.vtu beside it
     json : print exactly one JSON object, described by `rodcheck schema result`
     """
     from cases.loader import load_case
@@ -117,12 +121,18 @@ def solve(
     loaded = load_case(case)
     if model == "reference" and not (level is None and order is None):
         raise InputError("--level and --order belong to the rod model; leave them out with --model reference")
+    if vtu is not None and (vtu.suffix != ".vtu" or vtu.is_dir() or not vtu.parent.is_dir()):
+        raise InputError(f"--vtu: found {vtu}; give a file whose name ends in .vtu, in a folder that exists")
     from reports.progress import status
     from reports.result import result
     from reports.runner import run_reference, run_rod
 
+    solutions: list[Solution] = []
     with status(f"{loaded.name}: {model}"):
-        answer = run_rod(loaded, level, order) if model == "rod" else run_reference(loaded)
+        if model == "rod":
+            answer = run_rod(loaded, level, order, solved=solutions.append)
+        else:
+            answer = run_reference(loaded, solved=solutions.append)
     if json:
         quantities = answer.quantities
         print(
@@ -132,6 +142,9 @@ def solve(
         from reports.tables import print_run
 
         print_run(loaded, answer)
+    if vtu is not None:
+        for path in _written_fields(solutions[0], vtu):
+            print(f"rodcheck: wrote {path}", file=sys.stderr)
     if not answer.quantities.converged:
         print(f"rodcheck: {loaded.name}: not converged: {answer.quantities.outcome}", file=sys.stderr)
         return NOT_PASSED
@@ -281,6 +294,16 @@ def _written(write: Callable[[], Path]) -> Path:
     except OSError as error:
         where = f"cannot write to {error.filename or 'the folder'} ({error.strerror})"
         raise InputError(f"--output: {where}; give another folder") from error
+
+
+def _written_fields(solution: Solution, path: Path) -> tuple[Path, ...]:
+    from reports.fields import write_fields
+
+    try:
+        return write_fields(solution, path)
+    except OSError as error:
+        where = f"cannot write to {error.filename or path} ({error.strerror})"
+        raise InputError(f"--vtu: {where}; give another place") from error
 
 
 def _verification_outcomes() -> dict[str, Outcome] | None:

@@ -22,7 +22,7 @@ from reports.comparison import Comparison, Extrapolation
 from reports.memory import peak_memory
 from reports.processes import ProcessFailed, Progress, failure_reason, in_own_process
 from reports.quantities import ContactQuantities, PressureProfile, Quantities, RodQuantities, evaluate
-from reports.solution import Model
+from reports.solution import Model, Solution
 
 # The rod model answers in milliseconds; its seconds are the median of this many runs.
 ROD_REPEATS = 5
@@ -96,8 +96,18 @@ class Failure:
     reason: str
 
 
-def run_rod(case: Case, level: int | None = None, order: int | None = None, repeats: int = 1) -> Run:
+def run_rod(
+    case: Case,
+    level: int | None = None,
+    order: int | None = None,
+    repeats: int = 1,
+    solved: Callable[[Solution], None] = lambda _: None,
+) -> Run:
     """Solve a case with the rod model; level and order are the case's where they are not given.
+
+    Parameters
+    ----------
+    solved : called with every solution, for those who want more than the quantities
 
     Raises
     ------
@@ -115,6 +125,7 @@ def run_rod(case: Case, level: int | None = None, order: int | None = None, repe
         solution = rodmodel.solve(case.scene, level=levels, order=orders)
         quantities = evaluate(solution, points.stations, points.stress_points)
         runs.append((quantities, time.perf_counter() - begin))
+        solved(solution)
     quantities = replace(
         runs[-1][0],
         setup_seconds=statistics.median(quantities.setup_seconds for quantities, _ in runs),
@@ -124,8 +135,12 @@ def run_rod(case: Case, level: int | None = None, order: int | None = None, repe
     return Run("rod", levels, orders, quantities, total, peak_memory())
 
 
-def run_reference(case: Case) -> Run:
+def run_reference(case: Case, solved: Callable[[Solution], None] = lambda _: None) -> Run:
     """Solve a case as a 3D solid, on the reference's default mesh.
+
+    Parameters
+    ----------
+    solved : called with the solution, for those who want more than the quantities
 
     Raises
     ------
@@ -138,7 +153,9 @@ def run_reference(case: Case) -> Run:
     begin = time.perf_counter()
     solution = reference3d.solve(case.scene)
     quantities = evaluate(solution, points.stations, points.stress_points)
-    return Run("reference", None, None, quantities, time.perf_counter() - begin, peak_memory())
+    found = Run("reference", None, None, quantities, time.perf_counter() - begin, peak_memory())
+    solved(solution)
+    return found
 
 
 def run_case(case: Case, progress: Progress, cache: Cache | None = None) -> CaseRun:

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import os
 import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 
-def write_whole(path: Path, text: str) -> None:
-    """Write a text file through a temporary one beside it, making the folder where it is missing.
+@contextmanager
+def in_place_of(path: Path) -> Iterator[Path]:
+    """A temporary file beside `path`, to be written, that takes its place at the end; the folder is made if missing.
 
     An interrupted or failed write leaves what was there before.
 
@@ -19,14 +22,26 @@ def write_whole(path: Path, text: str) -> None:
     """
     path.parent.mkdir(parents=True, exist_ok=True)
     handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.", suffix=".tmp")
+    os.close(handle)
     temporary = Path(name)
     try:
-        with os.fdopen(handle, "w", encoding="utf-8") as stream:
-            stream.write(text)
-            stream.flush()
+        yield temporary
+        with temporary.open("rb") as stream:
             os.fsync(stream.fileno())
         temporary.chmod(0o644)
         temporary.replace(path)
     except BaseException:
         temporary.unlink(missing_ok=True)
         raise
+
+
+def write_whole(path: Path, text: str) -> None:
+    """Write a text file, whole or not at all.
+
+    Raises
+    ------
+    OSError
+        if the folder or the file cannot be written.
+    """
+    with in_place_of(path) as temporary:
+        temporary.write_text(text, encoding="utf-8")

@@ -47,6 +47,8 @@ def solved(monkeypatch: pytest.MonkeyPatch):
         ["solve", CASE, "--model", "reference", "--level", "3"],
         ["solve", CASE, CASE],
         ["compare"],
+        ["solve", CASE, "--vtu", "fields.vtk"],
+        ["solve", CASE, "--vtu", f"{__file__}/below/a/file.vtu"],
         ["compare", CASE, CASE],
         ["compare", CASE, "--cache", __file__],
         ["report", CASE, "--no-cache", "--cache", "folder"],
@@ -147,7 +149,7 @@ def test_an_unconverged_solve_shows_its_result_and_exits_with_1(
     case_run: CaseRun, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     unfinished = replace(case_run.rod, quantities=replace(case_run.rod.quantities, outcome="cycling"))
-    monkeypatch.setattr("reports.runner.run_rod", lambda *_: unfinished)
+    monkeypatch.setattr("reports.runner.run_rod", lambda *_, **__: unfinished)
 
     code = command_line.run(["solve", CASE, "--json"])
 
@@ -231,10 +233,24 @@ def test_report_refuses_a_file_as_its_folder_before_solving(tmp_path: Path, caps
     assert capsys.readouterr().err.count("\n") == 1
 
 
+def test_fields_are_written_where_asked_and_named_on_the_error_stream(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = tmp_path / "fields.vtu"
+
+    code = command_line.run(["solve", CASE, "--level", "1", "--order", "2", "--json", "--vtu", str(path)])
+
+    shown = capsys.readouterr()
+    assert code == 0
+    assert json.loads(shown.out)["converged"] is True
+    assert shown.err == f"rodcheck: wrote {path}\nrodcheck: wrote {tmp_path / 'fields-contact.vtu'}\n"
+    assert {file.name for file in tmp_path.iterdir()} == {"fields.vtu", "fields-contact.vtu"}
+
+
 def test_an_interrupt_exits_with_130_and_no_traceback(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    def interrupted(*_: object) -> None:
+    def interrupted(*_: object, **__: object) -> None:
         raise KeyboardInterrupt
 
     monkeypatch.setattr("reports.runner.run_rod", interrupted)
