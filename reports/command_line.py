@@ -133,6 +133,9 @@ def solve(
             answer = run_rod(loaded, level, order, solved=solutions.append)
         else:
             answer = run_reference(loaded, solved=solutions.append)
+    if vtu is not None:
+        for path in _written_fields(solutions[0], vtu):
+            print(f"rodcheck: wrote {path}", file=sys.stderr)
     if json:
         quantities = answer.quantities
         print(
@@ -142,9 +145,6 @@ def solve(
         from reports.tables import print_run
 
         print_run(loaded, answer)
-    if vtu is not None:
-        for path in _written_fields(solutions[0], vtu):
-            print(f"rodcheck: wrote {path}", file=sys.stderr)
     if not answer.quantities.converged:
         print(f"rodcheck: {loaded.name}: not converged: {answer.quantities.outcome}", file=sys.stderr)
         return NOT_PASSED
