@@ -1,7 +1,7 @@
-"""Frictionless node-to-surface penalty contact, reduced to the nodes of the first face of every pair.
+"""Frictionless penalty contact of points with a surface: of the nodes of the first face of every pair, or of others.
 
-A node i with tributary area A_i and gap d_i (the other face is interpolated opposite it) carries the force
-F_i = c_n A_i max(-d_i, 0). With the rods condensed onto the contact nodes, d = d0 + C F, so that F solves the
+A point i with tributary area A_i and gap d_i (the other face is interpolated opposite it) carries the force
+F_i = c_n A_i max(-d_i, 0). With the rods condensed onto the contact points, d = d0 + C F, so that F solves the
 linear complementarity problem
 
     F >= 0,   w = d0 + (C + diag(1 / (c_n A))) F >= 0,   F^T w = 0.
@@ -9,11 +9,16 @@ linear complementarity problem
 Where the springs stand for rigid contact, the problem is solved again with the springs moved by what they gave way,
 d0 - F / (c_n A), until the forces stay: then F depends on the penalty no more (augmented Lagrangian: M. J. D. Powell,
 in Optimization, ed. R. Fletcher, Academic Press 1969, 283-298).
+
+Instead of the nodes of the first face, those of the second may be the points (the other pass of node-to-surface
+contact), or Gauss points of the first face's elements (surface quadrature), to see what node-to-surface costs. Gauss
+points keep the springs as given: pressures free of them would not settle where displacements cannot tell them apart.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,6 +34,12 @@ from reference3d.scope import on_bed, penalty
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
+# What carries contact forces
+PointsOf = Literal["first nodes", "second nodes", "first Gauss points"]
+NODES: PointsOf = "first nodes"
+# Gauss points of an element of a face along each of its axes: as many as there are nodes to an element in the mean, as
+# more would ask for more pressures than the displacements of the face can tell apart
+GAUSS = 2
 # block pivoting steps without progress before single pivoting takes over (Judice and Pires 1994)
 PATIENCE = 5
 # how often springs are moved at most, and the change of the forces, of their sum, at which they stay
@@ -37,7 +48,7 @@ MOST_MOVES, STAYING = 50, 1e-6
 
 @dataclass(frozen=True)
 class ContactNodes:
-    """Nodes of the first face of a pair inside the overlap, a grid along s and across.
+    """Points in which a pair may touch inside the overlap, a grid along s and across: nodes of a face or Gauss points.
 
     Attributes
     ----------
@@ -76,20 +87,35 @@ class Complementarity:
     steps: int
 
 
-def contact_nodes(scene: Scene, pair: ContactPair, borders: dict[str, Borders], symmetric: bool) -> ContactNodes:
+def contact_nodes(
+    scene: Scene, pair: ContactPair, borders: dict[str, Borders], symmetric: bool, of: PointsOf = NODES
+) -> ContactNodes:
     """Contact nodes of a pair on meshes with the given element borders.
 
     Parameters
     ----------
     borders : of each rod, by name
     symmetric : whether they are those of the halves x >= 0
+    of : which points carry contact forces; on ground, which has no nodes, not those of the second face
+
+    Raises
+    ------
+    ValueError
+        if nodes of ground are asked for.
     """
     overlap = pair_overlap(scene, pair)
     first = face_frame(scene.rod(pair.first.rod), pair.first.face)
     own = borders[pair.first.rod]
-    across = own.x if first.lateral_axis == 0 else own.y
-    station, along_weight = _inside(own.s, *overlap.first[0])
-    lateral, across_weight = _inside(across, max(overlap.first[1][0], across[0]), overlap.first[1][1])
+    if of == "second nodes":
+        if not isinstance(pair.second, RodFace):
+            raise ValueError(f"of: found '{of}' for pair '{pair.name}', whose second face is ground and has no nodes")
+        there = face_frame(scene.rod(pair.second.rod), pair.second.face)
+        along, across = _rules(borders[pair.second.rod], there.lateral_axis, overlap.second, of)
+        along = _mapped(*along, float(overlap.sign[0]), float(overlap.shift[0]))
+        across = across if symmetric else _mapped(*across, float(overlap.sign[1]), float(overlap.shift[1]))
+    else:
+        along, across = _rules(own, first.lateral_axis, overlap.first, of)
+    (station, along_weight), (lateral, across_weight) = along, across
     points = np.stack([np.repeat(station, len(lateral)), np.tile(lateral, len(station))])
     opposite = overlap.sign[:, None] * points + overlap.shift[:, None]
     if symmetric:  # rods with opposite tangents have opposite x
@@ -105,16 +131,40 @@ def contact_nodes(scene: Scene, pair: ContactPair, borders: dict[str, Borders], 
         area=np.outer(along_weight, across_weight),
         gap=np.repeat(gaps(scene, pair, station), len(lateral)),
         penalty=penalty(scene, pair),
-        rigid=not on_bed(pair),
+        rigid=not on_bed(pair) and of != "first Gauss points",
         first=_face_rows(own, first.normal_axis, first.side, -float(first.side), points),
         second=opposite_rows,
     )
 
 
-def _inside(borders: Array, start: float, end: float) -> tuple[Array, Array]:
+def _rules(
+    borders: Borders, lateral_axis: int, extent: tuple[tuple[float, float], tuple[float, float]], of: PointsOf
+) -> tuple[tuple[Array, Array], tuple[Array, Array]]:
+    """Points and weights along a face and across it, mm."""
+    across = borders.x if lateral_axis == 0 else borders.y
+    rule = _gauss_points if of == "first Gauss points" else _nodes
+    return rule(borders.s, *extent[0]), rule(across, max(extent[1][0], float(across[0])), extent[1][1])
+
+
+def _nodes(borders: Array, start: float, end: float) -> tuple[Array, Array]:
     nodes, weights = line_nodes(borders), nodal_weights(borders, start, end)
     used = weights > 0.0
     return nodes[used], weights[used]
+
+
+def _gauss_points(borders: Array, start: float, end: float) -> tuple[Array, Array]:
+    root, weight = np.polynomial.legendre.leggauss(GAUSS)
+    middle, half = 0.5 * (borders[1:] + borders[:-1]), 0.5 * np.diff(borders)
+    used = (middle > start) & (middle < end)
+    middle, half = middle[used, None], half[used, None]
+    return (middle + half * root).ravel(), (half * weight).ravel()
+
+
+def _mapped(place: Array, weight: Array, sign: float, shift: float) -> tuple[Array, Array]:
+    """Points of the second face on the first one, ascending, and their weights."""
+    on_first = sign * (place - shift)
+    order = np.argsort(on_first)
+    return on_first[order], weight[order]
 
 
 def _face_rows(borders: Borders, normal_axis: int, side: int, sign: float, points: Array) -> csc_array:

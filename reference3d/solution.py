@@ -15,7 +15,6 @@ from numpy.typing import NDArray
 from cases.scene import ContactPair, Rod, Scene
 from reference3d.field import Field, displacement, section_resultants, stress
 from reference3d.frames import face_frame, rod_frame
-from reference3d.quadratic import nodal_weights
 from reference3d.scope import isotropic
 
 Array = NDArray[np.float64]
@@ -167,10 +166,10 @@ class Solution:
         """Nodal pressure along the zone; none in the middle if the second face does not reach it."""
         result = self.pairs[pair]
         pressure, lateral = result.pressure, result.lateral
-        across = nodal_weights(lateral[::2], float(lateral[0]), float(lateral[-1]))
+        across = result.area.sum(axis=0) / (result.pair.zone[1] - result.pair.zone[0])
         width = 2.0 * face_frame(self.scene.rod(result.pair.first.rod), result.pair.first.face).half_width
         middle = int(np.argmin(np.abs(lateral)))
-        inside = abs(lateral[middle]) < 1e-9 * width
+        inside = lateral[0] < 1e-9 * width and lateral[-1] > -1e-9 * width
         rows = (
             pressure[:, middle] if inside else np.zeros(len(pressure)),
             pressure @ across / width,

@@ -19,7 +19,9 @@ from scipy.sparse import csc_array, hstack
 from cases.scene import ContactPair, Material, Rod, Scene, SceneError
 from reference3d.body import Body, discretise
 from reference3d.contact import (
+    NODES,
     ContactNodes,
+    PointsOf,
     contact_nodes,
     near_contact,
     solve_complementarity,
@@ -53,7 +55,10 @@ PENALTY_SHARE = 1e-3
 
 
 def solve(
-    scene: Scene, refinement: int = DEFAULT_REFINEMENT, located: Solution | SolidSolution | None = None
+    scene: Scene,
+    refinement: int = DEFAULT_REFINEMENT,
+    located: Solution | SolidSolution | None = None,
+    contact_of: PointsOf = NODES,
 ) -> Solution | SolidSolution:
     """Solve a scene as a 3D solid.
 
@@ -62,6 +67,7 @@ def solve(
     refinement : k, elements along each axis of a coarse cell (`grading`); unknowns grow with its third power
     located : solution of the same scene on a coarser mesh, if there is one, which shows where contact is;
         solved here on the coarsest mesh if there is none; without contact it has no use
+    contact_of : which points carry contact forces (`contact`)
 
     Raises
     ------
@@ -69,27 +75,30 @@ def solve(
         if nothing holds a rod, contact included, nothing lies opposite a face that may touch, Poisson's ratio is next
         to 0.5, or the machine's memory is too small.
     ValueError
-        if `refinement` is below 1.
+        if `refinement` is below 1, or contact is to be at other points than the first face's nodes in a scene that is
+        not one of clamped bars.
     """
     if refinement < 1:
         raise ValueError(f"refinement: found {refinement}; a whole number of at least 1 is needed")
     _require_compressible(scene)
     if _is_clamped_bars(scene):
-        return _solve_bars(scene, refinement, located if isinstance(located, Solution) else None)
+        return _solve_bars(scene, refinement, located if isinstance(located, Solution) else None, contact_of)
+    if contact_of != NODES:
+        raise ValueError(f"contact_of: found '{contact_of}'; only clamped, parallel bars have other than '{NODES}'")
     return solve_solid(scene, refinement, located if isinstance(located, SolidSolution) else None)
 
 
-def _solve_bars(scene: Scene, refinement: int, located: Solution | None) -> Solution:
+def _solve_bars(scene: Scene, refinement: int, located: Solution | None, contact_of: PointsOf) -> Solution:
     begin = time.perf_counter()
     symmetric = is_symmetric(scene)
     # contact is located on the coarsest mesh, so that compliance is computed only where it is needed
     solutions, steps = 0, 0
     if located is None and refinement > 1 and scene.contacts:
-        located = _solve_bars(scene, 1, None)
+        located = _solve_bars(scene, 1, None, contact_of)
         solutions, steps = located.contact_solutions, located.active_sets
     bodies = {rod.name: discretise(scene, rod, refinement, symmetric) for rod in scene.rods}
     borders = {name: body.borders for name, body in bodies.items()}
-    nodes = [contact_nodes(scene, pair, borders, symmetric) for pair in scene.contacts]
+    nodes = [contact_nodes(scene, pair, borders, symmetric, contact_of) for pair in scene.contacts]
     ready = time.perf_counter()
 
     candidates = [_candidates(pair, grid, located) for pair, grid in zip(scene.contacts, nodes, strict=True)]
@@ -332,10 +341,12 @@ def _pair_result(
     pressure = force.reshape(shape) / area
     lateral = nodes.lateral
     if symmetric:
+        # a node in the middle has half its area on either side
+        middle = 1 if lateral[0] == 0.0 else 0
         half = area.copy()
-        half[:, 0] *= 2.0
-        area = np.concatenate([half[:, :0:-1], half], axis=1)
-        gap = np.concatenate([gap[:, :0:-1], gap], axis=1)
-        pressure = np.concatenate([pressure[:, :0:-1], pressure], axis=1)
-        lateral = np.concatenate([-lateral[:0:-1], lateral])
+        half[:, :middle] *= 2.0
+        area = np.concatenate([half[:, middle:][:, ::-1], half], axis=1)
+        gap = np.concatenate([gap[:, middle:][:, ::-1], gap], axis=1)
+        pressure = np.concatenate([pressure[:, middle:][:, ::-1], pressure], axis=1)
+        lateral = np.concatenate([-lateral[middle:][::-1], lateral])
     return PairResult(pair, nodes.station, lateral, area, gap, pressure)

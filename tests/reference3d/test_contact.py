@@ -1,15 +1,19 @@
 """Contact nodes, the complementarity problem and the contact patch test."""
 
+from dataclasses import replace
+from typing import get_args
+
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from scipy.optimize import nnls
 
-from cases.scene import Clamp, ContactPair, Line, Material, Rectangle, Rod, RodFace, Scene
-from reference3d.contact import contact_nodes, near_contact, solve_complementarity, solve_nested
+from cases.scene import Clamp, ContactPair, Ground, Line, Material, Rectangle, Rod, RodFace, Scene, Support
+from reference3d.contact import PointsOf, contact_nodes, near_contact, solve_complementarity, solve_nested
 from reference3d.grading import Borders, rod_borders
 from reference3d.quadratic import line_nodes, nodal_weights
+from reference3d.solver import solve
 
 
 def nodes_of(scene, refinement=1, symmetric=False):
@@ -31,6 +35,46 @@ def test_the_areas_are_those_of_the_zone(two_cantilevers):
     # the end of the zone carries the weight of one element, not of the one beyond
     length = nodes.station[2] - nodes.station[0]
     assert nodes.area[0].sum() == pytest.approx(length / 6.0 * 15.0)
+
+
+@pytest.mark.parametrize("of", ["second nodes", "first Gauss points"])
+def test_other_contact_points_have_the_area_of_the_zone_too(two_cantilevers, of):
+    # the upper bar points against the lower one and lies 4 mm aside: 11 mm of the widths overlap
+    scene = two_cantilevers(50000.0, 0.0, upper=Line((500.0, 15.0, 4.0), (200.0, 15.0, 4.0), (0.0, 1.0, 0.0)))
+    borders = {rod.name: rod_borders(scene, rod, 2, False) for rod in scene.rods}
+
+    nodes = contact_nodes(scene, scene.contacts[0], borders, False, of)
+
+    assert nodes.area.sum() == pytest.approx(100.0 * 11.0)
+    assert (np.diff(nodes.station) > 0.0).all()
+    assert (np.diff(nodes.lateral) > 0.0).all()
+    assert nodes.area.ravel() @ np.repeat(nodes.station, len(nodes.lateral)) == pytest.approx(250.0 * 1100.0)
+
+
+def test_on_matching_meshes_either_face_may_bear_the_nodes_and_gauss_points_share_the_force_alike(two_cantilevers):
+    scene = two_cantilevers(20000.0, 0.0)
+
+    first, second, gauss = (solve(scene, 1, contact_of=of) for of in get_args(PointsOf))
+
+    points = [found.contact_points("lower-upper") for found in (first, second, gauss)]
+    np.testing.assert_allclose(points[1].force, points[0].force, rtol=1e-6, atol=1e-6)
+    # where the pressure acts within an element is seen differently on this coarse mesh
+    assert points[2].force.sum() == pytest.approx(points[0].force.sum(), rel=1e-4)
+    assert gauss.outcome == "converged"
+    # resultant of the profile: it integrates the mean over the width along the zone
+    profile = gauss.contact_profile("lower-upper")
+    assert 15.0 * np.trapezoid(profile.mean, profile.station) == pytest.approx(points[2].force.sum(), rel=0.05)
+
+
+def test_ground_has_no_nodes_and_other_scenes_no_other_points(two_cantilevers, cantilever):
+    scene = two_cantilevers(50000.0, 0.0)
+    on_ground = replace(scene, contacts=(replace(scene.contacts[0], second=Ground()),))
+    free = replace(cantilever((0.0, 1.0, 0.0)), supports=(Support("rod", 0.0, ("x", "y", "s"), "section"),))
+
+    with pytest.raises(ValueError, match="ground and has no nodes"):
+        solve(on_ground, 1, contact_of="second nodes")
+    with pytest.raises(ValueError, match="only clamped, parallel bars"):
+        solve(free, 1, contact_of="first Gauss points")
 
 
 def test_a_half_carries_half_the_area(two_cantilevers):
