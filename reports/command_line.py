@@ -1,4 +1,4 @@
-"""The command `rodcheck`: list, solve, compare, report, verify, performance, stability and schema.
+"""The command `rodcheck`: list, solve, compare, report, deck, verify, performance, stability and schema.
 
 Heavy imports wait until a command needs them. Bad input is answered by one sentence on standard error and
 exit code 2; a verdict other than 'pass', a solver that did not converge or a case that failed by exit code 1. The
@@ -45,6 +45,7 @@ app.command(schema_app)
 
 Level = Annotated[int | None, Parameter(validator=validators.Number(gte=1, lte=12))]
 NoCache = Annotated[bool, Parameter(name="--no-cache", negative=())]
+NoPeers = Annotated[bool, Parameter(name="--no-peers", negative=())]
 Order = Annotated[int | None, Parameter(validator=validators.Number(gte=2, lte=20))]
 
 
@@ -152,7 +153,7 @@ def solve(
 
 
 @app.command
-def compare(*cases: str, cache: Path | None = None, no_cache: NoCache = False) -> int:
+def compare(*cases: str, cache: Path | None = None, no_cache: NoCache = False, no_peers: NoPeers = False) -> int:
     """Solve cases both ways and print how far apart the answers are.
 
     What the same code has answered before is taken from the cache, with the seconds it took then, and says so.
@@ -162,19 +163,26 @@ def compare(*cases: str, cache: Path | None = None, no_cache: NoCache = False) -
     cases : names of cases of the library, or paths of case files
     cache : folder of results; without it, rodcheck in $XDG_CACHE_HOME or ~/.cache
     no_cache : compute everything, and keep nothing
+    no_peers : leave out solvers that are not of this project, CalculiX and NGSolve, which are asked where installed
     """
     if not cases:
         raise InputError("compare: name at least one case; `rodcheck list` prints those of the library")
     from reports.tables import print_comparison
 
-    runs = _run_all(_load_all(cases), _cache(cache, no_cache))
+    runs = _run_all(_load_all(cases), _cache(cache, no_cache), not no_peers)
     for run in runs:
         print_comparison(run)
     return _exit_code(runs)
 
 
 @app.command
-def report(*cases: str, output: Path = Path("report"), cache: Path | None = None, no_cache: NoCache = False) -> int:
+def report(
+    *cases: str,
+    output: Path = Path("report"),
+    cache: Path | None = None,
+    no_cache: NoCache = False,
+    no_peers: NoPeers = False,
+) -> int:
     """Solve cases both ways and write one self-contained page, with the results as JSON beside it.
 
     With the whole library come the pages of verification, performance and stability. What the same code has answered
@@ -186,6 +194,7 @@ def report(*cases: str, output: Path = Path("report"), cache: Path | None = None
     output : folder for index.html and the results
     cache : folder of results; without it, rodcheck in $XDG_CACHE_HOME or ~/.cache
     no_cache : compute everything, and keep nothing
+    no_peers : leave out solvers that are not of this project, CalculiX and NGSolve, which are asked where installed
     """
     from cases.loader import library_names
 
@@ -195,7 +204,7 @@ def report(*cases: str, output: Path = Path("report"), cache: Path | None = None
     from reports.runner import Failure
     from reports.site import write_report
 
-    runs = _run_all(loaded, results)
+    runs = _run_all(loaded, results, not no_peers)
     outcomes = None if cases else _verification_outcomes()
     verification = None if outcomes is None else _write_verification(outcomes, output)
     performance = None if cases else _write_performance(output)
@@ -205,6 +214,40 @@ def report(*cases: str, output: Path = Path("report"), cache: Path | None = None
     print(_written(lambda: write_report(runs, output, pages)))
     incomplete = any(isinstance(run, Failure) for run in runs) or (not cases and len(pages) < 3)
     return NOT_PASSED if incomplete else 0
+
+
+@app.command
+def deck(
+    case: str,
+    /,
+    *,
+    output: Annotated[Path, Parameter(name=["--output", "-o"])],
+    refinement: Annotated[int, Parameter(validator=validators.Number(gte=1, lte=8))] = 1,
+) -> int:
+    """Write a case as an input file for Abaqus and CalculiX.
+
+    Parameters
+    ----------
+    case : name of a case of the library, or path of a case file
+    output : the file, ending in .inp
+    refinement : elements along each axis of a coarse cell; the 3D reference's meshes have 1, 2 and 3
+    """
+    from cases.loader import load_case
+
+    loaded = load_case(case)
+    if output.suffix != ".inp" or output.is_dir() or not output.parent.is_dir():
+        raise InputError(f"--output: found {output}; give a file whose name ends in .inp, in a folder that exists")
+    from reference3d.peers.deck import deck_text, make_deck
+    from reports.store import write_whole
+
+    text = deck_text(make_deck(loaded.scene, refinement))
+    try:
+        write_whole(output, text)
+    except OSError as error:
+        where = f"cannot write to {error.filename or output} ({error.strerror})"
+        raise InputError(f"--output: {where}; give another place") from error
+    print(output)
+    return 0
 
 
 @app.command
@@ -391,11 +434,11 @@ def _cache(folder: Path | None, none: bool) -> Cache | None:
         raise InputError("--cache: found no home folder to keep results in; give a folder, or --no-cache") from error
 
 
-def _run_all(cases: Sequence[Case], cache: Cache | None) -> list[CaseRun | Failure]:
+def _run_all(cases: Sequence[Case], cache: Cache | None, peers: bool) -> list[CaseRun | Failure]:
     from reports.progress import run_with_progress
     from reports.runner import CaseRun
 
-    runs = run_with_progress(cases, cache)
+    runs = run_with_progress(cases, cache, peers)
     notes = [note for run in runs if isinstance(run, CaseRun) for note in run.notes]
     for note in dict.fromkeys(notes):
         print(f"rodcheck: {note}", file=sys.stderr)

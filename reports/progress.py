@@ -10,6 +10,7 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, T
 
 from cases.case import Case
 from reports.cache import Cache
+from reports.peers import PEERS
 from reports.runner import STEPS, CaseRun, Failure, run_cases
 
 
@@ -18,9 +19,12 @@ def status(text: str) -> AbstractContextManager[object]:
     return Console(stderr=True).status(text)
 
 
-def run_with_progress(cases: Sequence[Case], cache: Cache | None = None) -> list[CaseRun | Failure]:
+def run_with_progress(
+    cases: Sequence[Case], cache: Cache | None = None, peers: bool = False
+) -> list[CaseRun | Failure]:
     """Run cases one after the other behind a progress bar."""
     console = Console(stderr=True)
+    steps = STEPS + (len(PEERS) if peers else 0)
     columns = (
         TextColumn("{task.description}"),
         BarColumn(),
@@ -28,14 +32,14 @@ def run_with_progress(cases: Sequence[Case], cache: Cache | None = None) -> list
         TimeElapsedColumn(),
     )
     with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as bars:
-        task = bars.add_task("", total=STEPS * len(cases))
+        task = bars.add_task("", total=steps * len(cases))
 
         def begun(case: Case, what: str) -> None:
             bars.update(task, description=f"{case.name}: {what}")
             bars.advance(task)
 
         runs = []
-        for index, run in enumerate(run_cases(cases, begun, cache), start=1):
-            bars.update(task, completed=STEPS * index)
+        for index, run in enumerate(run_cases(cases, begun, cache, peers), start=1):
+            bars.update(task, completed=steps * index)
             runs.append(run)
     return runs

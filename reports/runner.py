@@ -20,6 +20,7 @@ from reports.case_comparison import case_comparisons, comparisons_without_refere
 from reports.code_version import code_version
 from reports.comparison import Comparison, Extrapolation
 from reports.memory import peak_memory
+from reports.peers import PeerRun, SideBySide, ask_peers, side_by_side, stations_of
 from reports.processes import ProcessFailed, Progress, failure_reason, in_own_process
 from reports.quantities import ContactQuantities, PressureProfile, Quantities, RodQuantities, evaluate
 from reports.solution import Model, Solution
@@ -77,6 +78,8 @@ class CaseRun:
     ----------
     references : of the 3D reference on three meshes, coarse to fine; none where it cannot treat the scene
     refusal : then why, in one sentence; else ''
+    side_by_side : numbers that solvers not written here can tell, too
+    peers : what came of asking those solvers; none where they are not asked
     notes : what the user should know of the cache, a sentence each
     """
 
@@ -85,6 +88,8 @@ class CaseRun:
     references: tuple[Run, ...]
     comparisons: tuple[Comparison, ...]
     refusal: str = ""
+    side_by_side: tuple[SideBySide, ...] = ()
+    peers: tuple[PeerRun, ...] = ()
     notes: tuple[str, ...] = ()
 
 
@@ -185,7 +190,8 @@ def run_case(case: Case, progress: Progress, cache: Cache | None = None) -> Case
             references = _run_references(case, progress)
         except SceneError as error:
             alone = comparisons_without_reference(case, rod.quantities)
-            return CaseRun(case, rod, (), alone, str(error), _notes(cache))
+            beside = side_by_side(case, rod.quantities, (), None)
+            return CaseRun(case, rod, (), alone, str(error), beside, notes=_notes(cache))
         if cache is not None:
             cache.keep("reference", _reference_question(case), references)
 
@@ -197,8 +203,10 @@ def run_case(case: Case, progress: Progress, cache: Cache | None = None) -> Case
         found = reference3d.grid_convergence((first, second, third), (coarse, medium, fine), order)
         return Extrapolation(found.extrapolated, found.uncertainty, found.observed_order if found.asymptotic else None)
 
-    comparisons = case_comparisons(case, rod.quantities, [run.quantities for run in references.runs], extrapolate)
-    return CaseRun(case, rod, references.runs, comparisons, notes=_notes(cache))
+    quantities = [run.quantities for run in references.runs]
+    comparisons = case_comparisons(case, rod.quantities, quantities, extrapolate)
+    beside = side_by_side(case, rod.quantities, quantities, extrapolate)
+    return CaseRun(case, rod, references.runs, comparisons, side_by_side=beside, notes=_notes(cache))
 
 
 def _run_references(case: Case, progress: Progress) -> ReferenceRuns:
@@ -254,20 +262,25 @@ def passed(run: CaseRun | Failure) -> bool:
 
 
 def run_cases(
-    cases: Sequence[Case], progress: Callable[[Case, str], None], cache: Cache | None = None
+    cases: Sequence[Case], progress: Callable[[Case, str], None], cache: Cache | None = None, peers: bool = False
 ) -> Iterator[CaseRun | Failure]:
     """Run cases one after the other; a failure is yielded, not raised.
 
-    Each is solved in its own process; one whose answers the cache holds needs none.
+    Each is solved in its own process; one whose answers the cache holds needs none. With `peers`, solvers that are not
+    of this project are asked, too.
     """
     if cache is not None:
         cache.clean()
     for case in cases:
+        told = partial(progress, case)
         try:
             if _kept_rod(case, cache) is None or _kept_references(case, cache) is None:
-                yield in_own_process(partial(run_case, cache=cache), case, partial(progress, case))
+                run = in_own_process(partial(run_case, cache=cache), case, told)
             else:
-                yield run_case(case, partial(progress, case), cache)
+                run = run_case(case, told, cache)
+            if peers:
+                run = replace(run, peers=ask_peers(case.scene, stations_of(run.rod.quantities), told, cache))
+            yield run
         except ProcessFailed as error:
             yield Failure(case, str(error))
         except Exception as error:  # noqa: BLE001 (whatever went wrong, the next case is to be run)
