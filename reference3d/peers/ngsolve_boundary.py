@@ -32,8 +32,8 @@ Contact = Any
 # Penalty where none is given, in units of the softer rod's Young's modulus over the smallest side of a section: with it
 # Newton's method ends in a few iterations, and it changes the contact force by less than 1e-5.
 STIFF = 300.0
-# Newton's method ends when its last step has this share of the energy of its first.
-_TOLERANCE = 1e-9
+# Newton's method ends when a step has this share of the first one's energy.
+_TOLERANCE = 1e-18
 _MOST_ITERATIONS = 40
 
 
@@ -69,7 +69,7 @@ def solve_with_contact_boundary(scene: Scene, hexahedra: Hexahedra) -> Solved:
         step.data = factorise(form, system) * residual
         displacement.data -= step
         energy = abs(ngsolve.InnerProduct(step, residual))
-        first = max(first, energy)
+        first = first or energy
         if energy <= _TOLERANCE * first:
             outcome = "converged"
             break

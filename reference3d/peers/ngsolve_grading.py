@@ -35,7 +35,7 @@ class Fineness:
     Attributes
     ----------
     order : p, of the polynomials
-    across : number of elements over the height; over the width as many, or half as many in half a rod
+    skin : thickness of the outermost of three elements over the height and over the width; 0 for a single element
     clamp, load, edge : length of elements at clamps, at loads on a section and at the ends of contact
     zone : length of elements where contact is looked for
     longest : length of elements far from all of these
@@ -43,7 +43,7 @@ class Fineness:
     """
 
     order: int
-    across: int
+    skin: float
     clamp: float
     load: float
     edge: float
@@ -52,8 +52,8 @@ class Fineness:
     growth: float
 
 
-COARSE = Fineness(order=3, across=1, clamp=0.5, load=2.0, edge=1.0, zone=1.0, longest=6.0, growth=1.5)
-FINE = Fineness(order=5, across=2, clamp=0.1, load=1.0, edge=0.25, zone=0.5, longest=6.0, growth=1.2)
+COARSE = Fineness(order=3, skin=0.0, clamp=0.5, load=2.0, edge=1.0, zone=1.0, longest=12.0, growth=1.5)
+FINE = Fineness(order=3, skin=0.15, clamp=0.05, load=2.0, edge=0.5, zone=1.0, longest=12.0, growth=1.2)
 
 
 def graded(scene: Scene, fineness: Fineness, touching: Mapping[str, tuple[float, float]] | None = None) -> Hexahedra:
@@ -77,13 +77,18 @@ def graded(scene: Scene, fineness: Fineness, touching: Mapping[str, tuple[float,
         stretches = _stretches(scene, rod.name, fineness, zones, touching or {})
         sizes = [(start, end, size * section.height) for start, end, size in stretches]
         s = _borders(rod.length, sizes, fineness.longest * section.height, fineness.growth)
-        y = np.linspace(-section.height / 2.0, section.height / 2.0, fineness.across + 1)
-        x = np.linspace(-section.width / 2.0, section.width / 2.0, fineness.across + 1)
+        x, y = (_across(size, fineness.skin) for size in (section.width, section.height))
         if symmetric:
-            x = np.linspace(0.0, section.width / 2.0, (fineness.across + 1) // 2 + 1)
+            x = np.concatenate([[0.0], x[x > 0.0]])
         grids[rod.name] = Grid(x, y, s)
     orders = {name: (fineness.order,) * grid.cells[2] for name, grid in grids.items()}
     return Hexahedra(grids, orders, symmetric, zones)
+
+
+def _across(size: float, skin: float) -> Array:
+    """Borders over the height or the width of a section, mm."""
+    inner = [skin - 0.5, 0.5 - skin] if skin else []
+    return size * np.array([-0.5, *inner, 0.5])
 
 
 def _stretches(
