@@ -1,4 +1,7 @@
-"""What a verification check is, and what came of one: a number of the rod model, level by level, beside a reference."""
+"""What a verification check is, and what came of one: a number of a model, step by step, beside a reference.
+
+The steps are the levels of the rod model; of checks of the 3D reference its meshes, or its kinds of contact points.
+"""
 
 from __future__ import annotations
 
@@ -13,6 +16,23 @@ Kind = Literal["closed form", "published", "3d converged"]
 LEVELS = (1, 2, 3, 4, 5, 6, 7, 8)
 
 
+@dataclass(frozen=True)
+class Steps:
+    """What the numbers of a check are made for, one after the other.
+
+    Attributes
+    ----------
+    title : what they are, in the singular
+    name : what one of them is called
+    """
+
+    title: str
+    name: Callable[[int], str]
+
+
+BY_LEVEL = Steps("level", "h{}".format)
+
+
 def elasticity(article: int) -> str:
     """Citation of an article of the textbook most closed forms are from."""
     return f"Timoshenko, Goodier, Theory of Elasticity, 1970, article {article}"
@@ -25,7 +45,7 @@ class Reference:
     Attributes
     ----------
     value : in the check's unit
-    uncertainty : how far it may be from what the rod model should give, in the same unit: zero for what is exact, for
+    uncertainty : how far it may be from what the model should give, in the same unit: zero for what is exact, for
         an approximate formula the size of what it leaves out
     """
 
@@ -35,7 +55,7 @@ class Reference:
 
 @dataclass(frozen=True)
 class Check:
-    """One number of the rod model held against a reference, level by level.
+    """One number of a model held against a reference, level by level of the rod model or by other steps.
 
     Attributes
     ----------
@@ -46,9 +66,10 @@ class Check:
     unit : of value and reference; empty where they have none
     reference : makes the reference value
     value : the number at a level
-    levels : levels tried
+    levels : levels, or other steps, tried
     tolerance : largest relative error allowed at level `at_level`
     published : a well-known published value that is less right than the reference, for comparison
+    steps : what the levels are where they are not those of the rod model; the same for all checks of a group
     """
 
     name: str
@@ -62,6 +83,7 @@ class Check:
     at_level: int
     levels: tuple[int, ...] = LEVELS
     published: float | None = None
+    steps: Steps = BY_LEVEL
 
 
 @dataclass(frozen=True)
@@ -112,3 +134,8 @@ class Group:
     title: str
     text: str
     checks: tuple[Check, ...]
+
+    @property
+    def steps(self) -> Steps:
+        """What its checks are made for, one after the other."""
+        return self.checks[0].steps

@@ -1,4 +1,4 @@
-"""Errors of a group's checks against the level, on a logarithmic scale."""
+"""Errors of a group's checks against the level or step, on a logarithmic scale."""
 
 from __future__ import annotations
 
@@ -18,8 +18,9 @@ FLOOR = 1e-15
 
 
 def error_figure(outcomes: Sequence[Outcome]) -> go.Figure:
-    """Size of the relative error against the level; a short bar marks each tolerance at its level."""
+    """Size of the relative error against the level or step; a short bar marks each tolerance at its level."""
     figure = go.Figure()
+    steps = outcomes[0].check.steps
     for index, outcome in enumerate(outcomes):
         check, colour = outcome.check, COLOURS[index % len(COLOURS)]
         figure.add_scatter(
@@ -30,7 +31,8 @@ def error_figure(outcomes: Sequence[Outcome]) -> go.Figure:
             mode="lines+markers",
             line={"color": colour, "width": 1.8, "dash": DASHES[index // len(COLOURS)]},
             marker={"symbol": MARKERS[index % len(MARKERS)], "size": 7},
-            hovertemplate="h%{x}: %{y:.2e}",
+            text=[steps.name(level) for level in check.levels],
+            hovertemplate="%{text}: %{y:.2e}",
         )
         figure.add_scatter(
             x=[check.at_level],
@@ -40,7 +42,8 @@ def error_figure(outcomes: Sequence[Outcome]) -> go.Figure:
             showlegend=False,
             mode="markers",
             marker={"symbol": "line-ew", "size": 20, "line": {"color": colour, "width": 2.5}},
-            hovertemplate="tolerance at h%{x}: %{y:.2e}",
+            text=[steps.name(check.at_level)],
+            hovertemplate="tolerance at %{text}: %{y:.2e}",
         )
     figure.update_layout(
         template="none",
@@ -54,9 +57,9 @@ def error_figure(outcomes: Sequence[Outcome]) -> go.Figure:
         hovermode="closest",
     )
     levels = sorted({level for outcome in outcomes for level in outcome.check.levels})
-    ticks = {"tickvals": levels, "ticktext": [f"h{level}" for level in levels]}
+    ticks = {"tickvals": levels, "ticktext": [steps.name(level) for level in levels]}
     axis = {"gridcolor": GRID, "zeroline": False, "linecolor": "#9AA5B1", "showline": True}
-    figure.update_xaxes(title_text="level", range=[levels[0] - 0.3, levels[-1] + 0.3], **ticks, **axis)
+    figure.update_xaxes(title_text=steps.title, range=[levels[0] - 0.3, levels[-1] + 0.3], **ticks, **axis)
     figure.update_yaxes(
         title_text="relative error", type="log", exponentformat="power", dtick=2, automargin=True, **axis
     )

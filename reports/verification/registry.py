@@ -7,7 +7,17 @@ from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeElapsed
 from rich.progress import Progress as Bars
 
 from reports.processes import Progress, in_own_process
-from reports.verification import bending, curved, patch, published, solid, structures, torsion
+from reports.verification import (
+    bending,
+    contact_3d,
+    curved,
+    patch,
+    published,
+    solid,
+    solid_elements,
+    structures,
+    torsion,
+)
 from reports.verification.check import Group, Outcome, Reference
 
 GROUPS: tuple[Group, ...] = (
@@ -18,6 +28,8 @@ GROUPS: tuple[Group, ...] = (
     structures.GROUP,
     published.GROUP,
     solid.GROUP,
+    *solid_elements.GROUPS,
+    *contact_3d.GROUPS,
 )
 CHECKS = {check.name: check for group in GROUPS for check in group.checks}
 

@@ -17,7 +17,7 @@ def print_verification(groups: Sequence[Group], outcomes: Mapping[str, Outcome])
     console = Console(highlight=False)
     if not console.is_terminal:
         console = Console(highlight=False, width=WIDTH)
-    table = Table("check", "reference", "", "uncertainty", "level", "error", "tolerance", "verdict")
+    table = Table("check", "reference", "", "uncertainty", "at", "error", "tolerance", "verdict")
     for group in groups:
         table.add_section()
         for check in group.checks:
@@ -27,7 +27,7 @@ def print_verification(groups: Sequence[Group], outcomes: Mapping[str, Outcome])
                 f"{value(outcome.reference.value)} {check.unit}",
                 check.kind,
                 uncertainty(outcome),
-                f"h{check.at_level}",
+                check.steps.name(check.at_level),
                 relative(outcome.error),
                 relative(check.tolerance),
                 f"[{STYLES[outcome.verdict]}]{outcome.verdict}[/]",

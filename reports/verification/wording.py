@@ -49,7 +49,7 @@ def uncertainty(outcome: Outcome) -> str:
 
 def tolerance(check: Check) -> str:
     """The tolerance and the level at which it must be met."""
-    return f"{relative(check.tolerance)} at h{check.at_level}"
+    return f"{relative(check.tolerance)} at {check.steps.name(check.at_level)}"
 
 
 def published(outcome: Outcome) -> str:
