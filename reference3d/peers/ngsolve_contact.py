@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import cho_factor, cho_solve, cholesky, solve_triangular
 from scipy.optimize import nnls
-from scipy.sparse import csr_array, hstack
+from scipy.sparse import csr_array
 
 from cases.scene import ContactPair, Ground, RodFace, given_gap
 from reference3d.peers.answer import Array
@@ -53,17 +53,18 @@ def make_springs(system: System, pair: ContactPair) -> Springs:
     first = system.rod(pair.first.rod)
     points, weight = _points(system, pair)
     position, normal = first.frame.place(points), first.frame.normal(pair.first.face)
-    opening = -_along(system, pair.first.rod, points, normal)
     gap = np.zeros(len(weight))
     if isinstance(pair.second, RodFace):
         second, opposite = _opposite(system, pair.second, position, normal)
         inside = _within(system.rod(pair.second.rod), pair.second, second)
         position, weight, points = position[:, inside], weight[inside], points[:, inside]
         second, gap = second[:, inside], opposite[inside]
-        opening = csr_array(opening[inside]) + _along(system, pair.second.rod, second, normal)
+    opening = _along(system, pair.first.rod, points, -normal)
+    if isinstance(pair.second, RodFace):
+        opening = opening + _along(system, pair.second.rod, second, normal)
     if pair.gap != "drawn":
         gap = given_gap(pair.gap, points[2])
-    return Springs(position, normal, gap, weight * modulus(system, pair), csr_array(opening))
+    return Springs(position, normal, gap, weight * modulus(system, pair), opening)
 
 
 def modulus(system: System, pair: ContactPair) -> float:
@@ -79,7 +80,13 @@ def modulus(system: System, pair: ContactPair) -> float:
 def _along(system: System, rod: str, points: Array, direction: Array) -> csr_array:
     """The displacement along a direction at points of a rod, by the unknowns."""
     shapes = system.shape_functions(rod, points)
-    return csr_array(hstack([component * shapes for component in direction], format="csr"))
+    count, basis = shapes.shape
+    total = csr_array((count, 3 * basis))
+    for axis in np.flatnonzero(np.abs(direction) > _ACROSS):
+        columns = shapes.indices + axis * basis
+        part = csr_array((direction[axis] * shapes.data, columns, shapes.indptr), (count, 3 * basis))
+        total = part if total.nnz == 0 else total + part
+    return total
 
 
 def _opposite(system: System, face: RodFace, position: Array, normal: Array) -> tuple[Array, Array]:

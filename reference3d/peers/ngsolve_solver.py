@@ -123,7 +123,8 @@ def solve_condensed(scene: Scene, hexahedra: Hexahedra) -> Solved:
     form = stiffness(system)
     inverse = factorise(form, system)
     springs = {pair.name: make_springs(system, pair) for pair in scene.contacts}
-    opening = csr_array(vstack([of.opening for of in springs.values()])) if springs else None
+    openings = [of.opening for of in springs.values()]
+    opening = csr_array(vstack(openings)) if len(openings) > 1 else next(iter(openings), None)
 
     load, given, residual = (form.mat.CreateColVector() for _ in range(3))
     load.FV().NumPy()[:] = load_vector(system)
@@ -158,15 +159,12 @@ def solve_condensed(scene: Scene, hexahedra: Hexahedra) -> Solved:
 
 
 def factorise(form: BilinearForm, system: System) -> Operator:
-    """The condensed stiffness, factorised on one thread.
-
-    NGSolve's task manager is asked even so: within it, the factorisation takes half the time.
-    """
+    """The stiffness, or the condensed one, factorised on one thread."""
     import ngsolve
 
+    # Left to think of several threads, NGSolve takes four times as long even on one.
     ngsolve.SetNumThreads(1)
-    with ngsolve.TaskManager():
-        return form.mat.Inverse(system.space.FreeDofs(coupling=True), inverse="sparsecholesky")
+    return form.mat.Inverse(system.space.FreeDofs(coupling=form.condense), inverse="sparsecholesky")
 
 
 def _compliance(inverse: Operator, opening: csr_array, like: Vector) -> Array:

@@ -6,7 +6,9 @@ time that it needs for one space of vectors. Loads are forces at Gauss points, e
 
 from __future__ import annotations
 
+from collections import Counter
 from dataclasses import dataclass
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -101,18 +103,19 @@ def make_system(scene: Scene, hexahedra: Hexahedra, mesh: Mesh, *, of_vectors: b
     """
     import ngsolve
 
-    highest = max(order for orders in hexahedra.orders.values() for order in orders)
-    lower = _lower_orders(hexahedra, mesh, highest)
+    counts = Counter(order for orders in hexahedra.orders.values() for order in orders)
+    most = counts.most_common(1)[0][0]
+    others = _other_orders(hexahedra, mesh, most) if len(counts) > 1 else {}
 
     def with_orders(space: Space) -> Space:
-        for node, order in lower.items():
+        for node, order in others.items():
             space.SetOrder(node, order)
-        if lower:
+        if others:
             space.Update()
         return space
 
     held = ["|".join(names) for names in _held(scene, hexahedra, mesh)]
-    shared = {"order": highest, "order_policy": ngsolve.ORDER_POLICY.VARIABLE}
+    shared = {"order": most, "order_policy": ngsolve.ORDER_POLICY.VARIABLE}
     if of_vectors:
         x, y, z = held
         space = ngsolve.VectorH1(mesh.ngsolve, dirichletx=x, dirichlety=y, dirichletz=z, **shared)
@@ -122,20 +125,18 @@ def make_system(scene: Scene, hexahedra: Hexahedra, mesh: Mesh, *, of_vectors: b
     return System(scene, hexahedra, mesh, ngsolve.FESpace(spaces), spaces[0])
 
 
-def _lower_orders(hexahedra: Hexahedra, mesh: Mesh, highest: int) -> dict[NodeId, int]:
-    """Orders of the edges, faces and cells that have less than the highest: the most of those that share them."""
+def _other_orders(hexahedra: Hexahedra, mesh: Mesh, most: int) -> dict[NodeId, int]:
+    """Edges, faces and cells whose order is not that of most elements: it is the highest of the elements there."""
     import ngsolve
 
     found: dict[NodeId, int] = {}
-    if all(order == highest for orders in hexahedra.orders.values() for order in orders):
-        return found
     for name, part in mesh.rods.items():
         in_layer = part.grid.cells[0] * part.grid.cells[1]
         for number, order in enumerate(np.repeat(hexahedra.orders[name], in_layer).tolist(), start=part.element):
             element = mesh.ngsolve[ngsolve.ElementId(ngsolve.VOL, number)]
             for node in (*element.edges, *element.faces, ngsolve.NodeId(ngsolve.CELL, number)):
                 found[node] = max(order, found.get(node, 1))
-    return {node: order for node, order in found.items() if order < highest}
+    return {node: order for node, order in found.items() if order != most}
 
 
 def _held(scene: Scene, hexahedra: Hexahedra, mesh: Mesh) -> list[list[str]]:
@@ -297,9 +298,16 @@ def _gauss_points(
 
 def gauss(borders: Array, count: int) -> tuple[Array, Array]:
     """Places and weights of `count` Gauss points between every two borders."""
-    places, weights = np.polynomial.legendre.leggauss(count)
+    places, weights = _legendre(count)
     half = np.diff(borders)[:, None] / 2.0
     return (borders[:-1, None] + half * (1.0 + places)).ravel(), (half * weights).ravel()
+
+
+@cache
+def _legendre(count: int) -> tuple[Array, Array]:
+    """Places and weights of Gauss's rule between -1 and 1."""
+    places, weights = np.polynomial.legendre.leggauss(count)
+    return places, weights
 
 
 def given_displacement(system: System) -> Array:
