@@ -6,14 +6,19 @@ surfaces. Contact forces are those that it prints for the slave surface, reactio
 
 from __future__ import annotations
 
+import ctypes
+import math
 import re
 import resource
 import shutil
+import signal
 import subprocess
+import sys
 import tempfile
 import time
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -34,6 +39,8 @@ SCALE = 1e-3
 TIME_LIMIT = 300.0
 # force on a rod that may be left over, of the sum of its nodal forces: they are printed with seven digits
 BALANCE = 1e-5
+# option of Linux's prctl: the signal that a process is sent when the one that started it ends
+PR_SET_PDEATHSIG = 1
 # seconds between two looks at the memory of the run
 LOOK = 0.05
 MISSING = "CalculiX is not installed: no program `ccx` on the path (Debian, Ubuntu: apt-get install calculix-ccx)"
@@ -181,8 +188,7 @@ def run_deck(text: str, folder: Path, time_limit: float = TIME_LIMIT) -> DeckRun
             stdin=subprocess.DEVNULL,
             stdout=stream,
             stderr=subprocess.STDOUT,
-            # whoever started this may be killed before he can end it
-            preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_CPU, (int(time_limit), int(time_limit))),
+            preexec_fn=partial(_end_in_time, time_limit),
         )
         try:
             while process.poll() is None and not late:
@@ -196,6 +202,14 @@ def run_deck(text: str, folder: Path, time_limit: float = TIME_LIMIT) -> DeckRun
     output = told.read_text(encoding="utf-8", errors="replace")
     outcome = f"refused: not done within {time_limit:g} s" if late else _outcome(output, code, folder / "deck.sta")
     return DeckRun(outcome, unknowns(output), seconds, peak)
+
+
+def _end_in_time(time_limit: float) -> None:
+    """See to it that a new process ends by itself, as whoever started it may be killed before he can end it."""
+    limit = math.ceil(time_limit)
+    resource.setrlimit(resource.RLIMIT_CPU, (limit, limit))
+    if sys.platform == "linux":
+        ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
 
 
 def _outcome(output: str, code: int, sta: Path) -> str:

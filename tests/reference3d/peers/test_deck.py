@@ -1,4 +1,4 @@
-"""The deck of a scene: words both readers know, a mesh in their order, loads and holds that mean what the scene says."""
+"""The deck of a scene: words both readers know, a mesh in their order, loads and holds that mean what it says."""
 
 import re
 from collections import defaultdict
@@ -73,10 +73,11 @@ FACES = {
     "S6": (4, 8, 5, 1, 20, 16, 17, 12),
 }
 STEEL = Material(2e5, 0.3, 7.85e-9)
+SQUAT = Rectangle(8.0, 10.0)
 WOOD = Orthotropic((500.0, 900.0, 11000.0), (700.0, 600.0, 50.0), (0.4, 0.02, 0.03))
 
 
-def bar(name="bar", end=(60.0, 0.0, 0.0), start=(0.0, 0.0, 0.0), section=Rectangle(8.0, 10.0), material=STEEL):
+def bar(name="bar", end=(60.0, 0.0, 0.0), start=(0.0, 0.0, 0.0), section=SQUAT, material=STEEL):
     line = Line(start, end, (0.0, 1.0, 0.0))
     return Rod(name, line, section, material, (0.0, line.length))
 
@@ -123,7 +124,7 @@ def keywords(text):
     for line in text.splitlines():
         if line.startswith("*") and not line.startswith("**"):
             name, *parameters = (part.strip() for part in line[1:].split(","))
-            yield name, dict((part.split("=") + [""])[:2] for part in parameters)
+            yield name, dict([*part.split("="), ""][:2] for part in parameters)
 
 
 def blocks(text, keyword):
