@@ -30,6 +30,8 @@ from reports.formatting import (
     values_with_unit,
 )
 from reports.html import rendered
+from reports.peers import as_json
+from reports.peers_table import peers_summary, peers_table
 from reports.processes import ProcessFailed, Progress, in_own_process
 from reports.quantities import DEFINITIONS
 from reports.result import result
@@ -112,6 +114,7 @@ def render(runs: Sequence[CaseRun | Failure], drawn: Mapping[str, DrawnPicture],
         "page.html.jinja",
         figures,
         cases=cases,
+        peers=peers_summary(runs),
         definitions=DEFINITIONS.values(),
         repeats=ROD_REPEATS,
         pages=[(page, *PAGES[page]) for page in pages],
@@ -213,6 +216,7 @@ def _case(run: CaseRun, anchor: str, picture: DrawnPicture) -> tuple[dict[str, A
         "no_picture": picture.problem,
         "checks": _check_groups(run.comparisons),
         "sections": section_table(case.scene.rods),
+        "peers": peers_table(run),
         "costs": [_cost_row(solver, answer) for solver, answer in _solvers(run)],
     }
     return content, figures
@@ -303,7 +307,7 @@ def _cost_row(solver: str, answer: Run) -> dict[str, str]:
 
 
 def _write_results(run: CaseRun, folder: Path) -> None:
-    """Both models' result objects and the comparisons, one JSON file each."""
+    """Both models' result objects, the comparisons and what peers say, one JSON file each."""
     for answer in (run.rod, *run.references[-1:]):
         found = result(run.case.name, answer.model, answer.level, answer.order, answer.quantities, answer.total_seconds)
         write_whole(folder / f"{run.case.name}-{answer.model}.json", found.model_dump_json(indent=1) + "\n")
@@ -312,3 +316,5 @@ def _write_results(run: CaseRun, folder: Path) -> None:
     ]
     text = json.dumps(comparisons, indent=1, allow_nan=False)
     write_whole(folder / f"{run.case.name}-comparisons.json", text + "\n")
+    beside = as_json(run.side_by_side, run.peers, run.rod.quantities)
+    write_whole(folder / f"{run.case.name}-peers.json", json.dumps(beside, indent=1, allow_nan=False) + "\n")

@@ -20,6 +20,7 @@ from reports.formatting import (
     title,
     values_with_unit,
 )
+from reports.peers_table import peers_table
 from reports.runner import CaseRun, Failure, Run
 from reports.solution import Array
 
@@ -137,4 +138,21 @@ def print_comparison(run: CaseRun | Failure) -> None:
     console.print(table)
     for reason in dict.fromkeys(found.reason for found in run.comparisons if found.reason):
         console.print(f"not resolved: {escape(reason)}")
+    _print_peers(console, run)
     console.print()
+
+
+def _print_peers(console: Console, run: CaseRun) -> None:
+    """Print what every solver says, side by side, what it spent, and why others say nothing."""
+    found = peers_table(run)
+    if run.peers:
+        values = Table("side by side (difference from 3D)", *found.columns)
+        for title_, cells in found.rows:
+            values.add_row(escape(title_), *cells)
+        console.print(values)
+        costs = Table("solver", "unknowns", "time", "peak memory", "outcome")
+        for cost in found.costs:
+            costs.add_row(cost.solver, cost.unknowns, cost.time, cost.memory, escape(cost.note))
+        console.print(costs)
+    for sentence in found.missing:
+        console.print(escape(sentence))

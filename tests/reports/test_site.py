@@ -142,7 +142,8 @@ def test_results_are_written_beside_the_page(
     assert path == tmp_path / "report" / "index.html"
     results = {file.name: json.loads(file.read_text()) for file in (tmp_path / "report" / "results").iterdir()}
     name = case_run.case.name
-    assert set(results) == {f"{name}-rod.json", f"{name}-reference.json", f"{name}-comparisons.json"}
+    kinds = ("rod", "reference", "comparisons", "peers")
+    assert set(results) == {f"{name}-{kind}.json" for kind in kinds}
     assert len(results[f"{name}-comparisons.json"]) == len(case_run.comparisons)
 
 
