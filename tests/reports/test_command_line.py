@@ -7,6 +7,7 @@ import subprocess
 import sys
 from collections.abc import Sequence
 from dataclasses import replace
+from importlib.resources import files
 from pathlib import Path
 
 import jsonschema
@@ -47,6 +48,8 @@ def solved(monkeypatch: pytest.MonkeyPatch):
         ["solve", CASE, "--model", "reference", "--level", "3"],
         ["solve", CASE, CASE],
         ["compare"],
+        ["solve", CASE, "--mesh", "bars.msh"],
+        ["solve", CASE, "--model", "reference", "--mesh", "no such file.msh"],
         ["solve", CASE, "--vtu", "fields.vtk"],
         ["solve", CASE, "--vtu", f"{__file__}/below/a/file.vtu"],
         ["compare", CASE, CASE],
@@ -54,6 +57,10 @@ def solved(monkeypatch: pytest.MonkeyPatch):
         ["report", CASE, "--no-cache", "--cache", "folder"],
         ["compare", CASE, "no-such-case"],
         ["report", "no-such-case"],
+        ["deck", CASE],
+        ["deck", CASE, "-o", "deck.txt"],
+        ["deck", CASE, "-o", "no-such-folder/deck.inp"],
+        ["deck", CASE, "-o", "deck.inp", "--refinement", "0"],
         ["schema", "nothing"],
         ["nonsense"],
     ],
@@ -82,6 +89,27 @@ def test_a_case_file_with_a_fault_is_bad_input(tmp_path: Path, capsys: pytest.Ca
     assert (code, shown.out) == (2, "")
     assert "broken.toml" in shown.err
     assert shown.err.count("\n") == 1
+
+
+def test_a_deck_is_written_whole(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    code = command_line.run(["deck", "crossed-cantilevers", "-o", str(tmp_path / "deck.inp")])
+
+    assert (code, capsys.readouterr().out) == (0, f"{tmp_path / 'deck.inp'}\n")
+    text = (tmp_path / "deck.inp").read_text()
+    assert text.startswith("*HEADING\n")
+    assert text.endswith("*END STEP\n")
+
+
+def test_a_case_that_a_deck_cannot_express_leaves_no_file(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    case = Path(str(files("cases").joinpath("library", "three-leaf-spring.toml"))).read_text()
+    (tmp_path / "round.toml").write_text(case.replace("gap = 0", "gap = { radius = 500, station = 185 }", 1))
+
+    code = command_line.run(["deck", str(tmp_path / "round.toml"), "-o", str(tmp_path / "deck.inp")])
+
+    shown = capsys.readouterr()
+    assert (code, shown.out) == (2, "")
+    assert "contacts.upper.gap" in shown.err
+    assert [path.name for path in tmp_path.iterdir()] == ["round.toml"]
 
 
 def test_list_prints_every_case_with_its_title(capsys: pytest.CaptureFixture[str]) -> None:
