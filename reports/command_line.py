@@ -102,6 +102,7 @@ def solve(
     model: Literal["rod", "reference"] = "rod",
     level: Level = None,
     order: Order = None,
+    mesh: Path | None = None,
     vtu: Path | None = None,
     json: Annotated[bool, Parameter(name="--json", negative=())] = False,
 ) -> int:
@@ -113,6 +114,9 @@ def solve(
     model : the rod model, or the 3D reference
     level : k of the rod model h_k, 1 to 12; the case file's where it is not given
     order : order p of the rod model along the rods, 2 to 20; the case file's where it is not given
+    mesh : file with a mesh that the 3D reference takes instead of its own, in any format that meshio reads: hexahedra
+        of 8, 20 or 27 nodes or tetrahedra of 4 or 10, in groups named after the rods (ROD for its elements, ROD.start
+        and ROD.end for clamped ends, ROD.top and so on for faces that are the first of a contact pair)
     vtu : file, ending in .vtu, for displacement and stress of the bodies (stress and von_mises in global axes, stress_s
         along the rods; N, mm, MPa); points of contact go to NAME-contact.vtu beside it
     json : print exactly one JSON object, described by `rodcheck schema result`
@@ -122,6 +126,8 @@ def solve(
     loaded = load_case(case)
     if model == "reference" and not (level is None and order is None):
         raise InputError("--level and --order belong to the rod model; leave them out with --model reference")
+    if mesh is not None and model == "rod":
+        raise InputError("--mesh belongs to the 3D reference; give it with --model reference")
     if vtu is not None and (vtu.suffix != ".vtu" or vtu.is_dir() or not vtu.parent.is_dir()):
         raise InputError(f"--vtu: found {vtu}; give a file whose name ends in .vtu, in a folder that exists")
     from reports.progress import status
@@ -133,7 +139,7 @@ def solve(
         if model == "rod":
             answer = run_rod(loaded, level, order, solved=solutions.append)
         else:
-            answer = run_reference(loaded, solved=solutions.append)
+            answer = run_reference(loaded, mesh, solved=solutions.append)
     if vtu is not None:
         for path in _written_fields(solutions[0], vtu):
             print(f"rodcheck: wrote {path}", file=sys.stderr)

@@ -1,7 +1,7 @@
 """The displacement, stress and contact of a solved scene as VTU files, for ParaView and its like.
 
-Bodies are 27-node hexahedra. The stress at a node is the mean of the elements that meet there; for the rod model, whose
-fields are polynomials, the mesh is only the places at which they are told.
+Bodies are 27-node hexahedra, or the elements of a mesh made elsewhere. The stress at a node is the mean of the elements
+that meet there; for the rod model, whose fields are polynomials, the mesh is only the places at which they are told.
 """
 
 from __future__ import annotations
@@ -12,9 +12,12 @@ from pathlib import Path
 
 import meshio
 import numpy as np
+from numpy.typing import NDArray
 
 import rodmodel
 from reference3d.node_grids import NodeGrid, nodal_pressure, node_grids
+from reference3d.own_mesh import OwnMeshSolution
+from reference3d.own_mesh.solution import OwnRod
 from reference3d.quadratic import line_nodes
 from reference3d.section_mesh import section_mesh
 from reference3d.solid_solution import SolidSolution
@@ -47,13 +50,15 @@ class BodyField:
     Attributes
     ----------
     position, displacement : global, mm, shape (n, 3)
-    hexahedra : nodes of the elements, in VTK's order, shape (n_elements, 27)
+    kind : meshio's name of the elements
+    cells : their nodes, in VTK's order, shape (n_elements, n_nodes)
     stress : global axes: XX, YY, ZZ, XY, YZ, XZ, MPa, shape (n, 6)
     stress_s : sigma_s, along the rod, MPa, shape (n,)
     """
 
     position: Array
-    hexahedra: np.ndarray
+    kind: str
+    cells: NDArray[np.int64]
     displacement: Array
     stress: Array
     stress_s: Array
@@ -82,17 +87,39 @@ def body_field(solution: Solution, rod: str, grid: NodeGrid) -> BodyField:
     parts = [
         solution.stress(rod, places[:, start : start + AT_A_TIME]) for start in range(0, places.shape[1], AT_A_TIME)
     ]
-    xx, yy, ss, ys, xs, xy = local = np.hstack(parts)
-    tensor = np.array([[xx, xy, xs], [xy, yy, ys], [xs, ys, ss]])
-    turned = np.repeat(axes, count, axis=0)
-    whole = np.einsum("nag,abn,nbh->ghn", turned, tensor, turned, optimize=True)
-    stress = np.stack([whole[0, 0], whole[1, 1], whole[2, 2], whole[0, 1], whole[1, 2], whole[0, 2]], axis=1)
+    local = np.hstack(parts)
+    stress = _in_global_axes(local, np.repeat(axes, count, axis=0))
     in_section = grid.quads[:, 3 * PLACES[:, 1] + PLACES[:, 0]]
     first_planes = np.arange(0, planes - 1, 2)
     hexahedra = in_section + count * (first_planes[:, None, None] + PLACES[:, 2])
     return BodyField(
-        position.reshape(-1, 3), hexahedra.reshape(-1, 27), grid.displacement.reshape(-1, 3), stress, local[2]
+        position.reshape(-1, 3),
+        "hexahedron27",
+        hexahedra.reshape(-1, 27),
+        grid.displacement.reshape(-1, 3),
+        stress,
+        local[2],
     )
+
+
+def _in_global_axes(local: Array, axes: Array) -> Array:
+    """XX, YY, ZZ, XY, YZ, XZ, shape (n, 6), of xx, yy, ss, ys, xs, xy, shape (6, n), in frames of shape (n, 3, 3)."""
+    xx, yy, ss, ys, xs, xy = local
+    tensor = np.array([[xx, xy, xs], [xy, yy, ys], [xs, ys, ss]])
+    whole = np.einsum("nag,abn,nbh->ghn", axes, tensor, axes, optimize=True)
+    return np.stack([whole[0, 0], whole[1, 1], whole[2, 2], whole[0, 1], whole[1, 2], whole[0, 2]], axis=1)
+
+
+def _own_mesh_field(found: OwnRod) -> BodyField:
+    mesh = found.body.mesh
+    stress, axes = found.nodal_stress()
+    return BodyField(mesh.nodes, mesh.kind.name, mesh.elements, found.nodal, _in_global_axes(stress, axes), stress[2])
+
+
+def _fields(solution: Solution) -> list[BodyField]:
+    if isinstance(solution, OwnMeshSolution):
+        return [_own_mesh_field(solution.rods[rod.name]) for rod in solution.scene.rods]
+    return [body_field(solution, rod, grid) for rod, grid in _grids(solution).items()]
 
 
 def _grids(solution: Solution) -> dict[str, NodeGrid]:
@@ -118,21 +145,19 @@ def _rod_model_grid(solution: rodmodel.Solution, rod: str) -> NodeGrid:
 
 
 def _bodies(solution: Solution) -> meshio.Mesh:
-    found = [body_field(solution, rod, grid) for rod, grid in _grids(solution).items()]
+    found = _fields(solution)
     start = np.cumsum([0, *(len(body.position) for body in found)])
-    cells = np.concatenate([body.hexahedra + first for body, first in zip(found, start, strict=False)])
     stress = np.concatenate([body.stress for body in found])
-    number = np.repeat(np.arange(len(found)), [len(body.hexahedra) for body in found])
     return meshio.Mesh(
         np.concatenate([body.position for body in found]),
-        [("hexahedron27", cells)],
+        [(body.kind, body.cells + first) for body, first in zip(found, start, strict=False)],
         point_data={
             "displacement": np.concatenate([body.displacement for body in found]),
             "stress": stress,
             "stress_s": np.concatenate([body.stress_s for body in found]),
             "von_mises": von_mises(stress),
         },
-        cell_data={"rod": [number]},
+        cell_data={"rod": [np.full(len(body.cells), number) for number, body in enumerate(found)]},
     )
 
 

@@ -12,6 +12,7 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from inspect import getsource
+from pathlib import Path
 
 from cases.case import Case, Grades
 from cases.scene import SceneError
@@ -140,23 +141,25 @@ def run_rod(
     return Run("rod", levels, orders, quantities, total, peak_memory())
 
 
-def run_reference(case: Case, solved: Callable[[Solution], None] = lambda _: None) -> Run:
-    """Solve a case as a 3D solid, on the reference's default mesh.
+def run_reference(case: Case, mesh: Path | None = None, solved: Callable[[Solution], None] = lambda _: None) -> Run:
+    """Solve a case as a 3D solid, on the reference's default mesh or on one made elsewhere.
 
     Parameters
     ----------
+    mesh : file with the mesh made elsewhere (`reference3d.own_mesh`)
     solved : called with the solution, for those who want more than the quantities
 
     Raises
     ------
     SceneError
-        if the 3D reference cannot treat the scene.
+        if the 3D reference cannot treat the scene, or the mesh is not the scene's.
     """
     import reference3d
+    from reference3d.own_mesh import solve_own_mesh
 
     points = evaluation_points(case)
     begin = time.perf_counter()
-    solution = reference3d.solve(case.scene)
+    solution: Solution = reference3d.solve(case.scene) if mesh is None else solve_own_mesh(case.scene, mesh)
     quantities = evaluate(solution, points.stations, points.stress_points)
     found = Run("reference", None, None, quantities, time.perf_counter() - begin, peak_memory())
     solved(solution)
