@@ -217,7 +217,7 @@ def _material(deck: Deck, name: str, rod: HexRod) -> Iterator[str]:
         return
     yield "** The axes of the material turn along the rod; every layer of elements has those of its middle."
     for layer in range(len(rod.body.kind)):
-        part = f"{elset}_{layer + 1}"
+        part = f"L{layer + 1}_{elset}"
         yield f"*ELSET, ELSET={part}"
         yield from _in_lines(rod.mesh.element_numbers(np.array([layer])).ravel().tolist())
         yield from _orientation(f"O_{part}", rod.body.axes[2 * layer + 1])
@@ -255,11 +255,11 @@ def _contacts(deck: Deck) -> Iterator[str]:
         first, second, name = (deck.name(kind, pair.name) for kind in ("first", "second", "pair"))
         for surface, faces in ((first, surfaces.first), (second, surfaces.second)):
             for side, elements in faces.items():
-                yield f"*ELSET, ELSET={surface}_{side}"
+                yield f"*ELSET, ELSET={side}_{surface}"
                 yield from _in_lines(elements)
             yield f"*SURFACE, NAME={surface}, TYPE=ELEMENT"
             for side in faces:
-                yield f"{surface}_{side}, {side}"
+                yield f"{side}_{surface}, {side}"
         yield f"*SURFACE INTERACTION, NAME=I_{name}"
         yield "*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR"
         stiffness = contact_stiffness(deck.scene, pair)
