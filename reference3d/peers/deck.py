@@ -184,9 +184,9 @@ def _heading(deck: Deck) -> Iterator[str]:
     if deck.scale != 1.0:
         yield f"** Loads, gaps and prescribed displacements are multiplied by {deck.scale:g}; so are the results."
     if deck.scene.contacts:
-        yield "** One increment, as CalculiX pairs the surfaces anew in each, on the deformed shape. Small sliding is for"
-        yield "** Abaqus, which then keeps the pairs of the undeformed shape, and takes *CLEARANCE with it alone; CalculiX"
-        yield "** warns that it does without."
+        yield "** One increment, as CalculiX pairs the surfaces anew in each, on the deformed shape. Small sliding"
+        yield "** is for Abaqus, which then keeps the pairs of the undeformed shape, and takes *CLEARANCE with it"
+        yield "** alone; CalculiX warns that it does without."
 
 
 def _meshes(deck: Deck) -> dict[str, Hexahedra]:
