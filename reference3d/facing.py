@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -140,6 +141,7 @@ class Patch:
     least: float | None
 
 
+@lru_cache(maxsize=32)
 def patches(scene: Scene, pair: ContactPair) -> tuple[Patch, ...]:
     """Patches of a pair on its rods, in the order of its faces.
 
