@@ -15,6 +15,8 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
 TOP = Path(__file__).parent.parent
+# The project's own packages: where it is installed, others lie beside them.
+OWN = ("cases", "reference3d", "reports", "rodmodel")
 # Distributions that a solver or the evaluation of its result may import, optional ones included.
 DISTRIBUTIONS = ("gmsh", "numpy", "scikit-fem", "scipy")
 # Settings that change seconds, and results by round-off.
@@ -79,7 +81,10 @@ def _with_packages(names: Iterable[str]) -> list[str]:
 
 def _source_file(name: str) -> Path | None:
     """The file of a module or package of the project; None for anything else."""
-    place = TOP.joinpath(*name.split("."))
+    root, *_ = parts = name.split(".")
+    if root not in OWN:
+        return None
+    place = TOP.joinpath(*parts)
     candidates = (place.with_name(place.name + ".py"), place / "__init__.py")
     return next((path for path in candidates if path.is_file()), None)
 

@@ -10,9 +10,8 @@ from pathlib import Path
 import pytest
 
 from reports import code_version as module
-from reports.code_version import DISTRIBUTIONS, code_version, imported_names, source_files
+from reports.code_version import DISTRIBUTIONS, OWN, code_version, imported_names, source_files
 
-OWN = {"cases", "rodmodel", "reference3d", "reports"}
 SOLVERS = ("rodmodel", "reference3d")
 
 
@@ -27,12 +26,14 @@ def project(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
         "shared/__init__.py": "",
         "shared/shape.py": "",
         "other.py": "import model\n",
+        "numpy/__init__.py": "",  # as beside an installed project
     }
     for name, text in files.items():
         path = tmp_path / name
         path.parent.mkdir(exist_ok=True)
         path.write_text(text)
     monkeypatch.setattr(module, "TOP", tmp_path)
+    monkeypatch.setattr(module, "OWN", ("model", "scene", "shared", "other"))
     code_version.cache_clear()
     yield tmp_path
     code_version.cache_clear()
@@ -103,7 +104,7 @@ def test_no_import_is_overlooked_and_every_package_below_counts_with_its_version
                 everything.add(str(node.module).partition(".")[0])
     assert roots == everything
 
-    below = roots - OWN - set(sys.stdlib_module_names)
+    below = roots - set(OWN) - set(sys.stdlib_module_names)
     known = packages_distributions()
 
     assert {known[name][0] for name in below if name in known} <= set(DISTRIBUTIONS)
