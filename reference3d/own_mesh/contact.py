@@ -14,20 +14,17 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import coo_array, csr_array
-from scipy.spatial import cKDTree
 
-from cases.scene import ContactPair, Rod, RodFace, Scene, SceneError
-from reference3d.centre_line import frames, points
+from cases.scene import ContactPair, RodFace, Scene, SceneError
 from reference3d.facing import opposite
 from reference3d.frames import gaps
+from reference3d.own_mesh.arc_length import arc_lengths
 from reference3d.own_mesh.body import OwnBody
 from reference3d.scope import on_bed, penalty
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
-# places of a centre line from which the nearest begins the search for an arc length, and Newton's steps
-SAMPLES, STEPS = 2001, 4
 # corners that stand for less, over the largest area of one, take no part
 LEAST_AREA = 1e-6
 
@@ -69,17 +66,6 @@ class _Facets:
     area: Array
     corners: IntArray
     hats: Array
-
-
-def arc_lengths(rod: Rod, position: Array) -> Array:
-    """Arc length of the sections in which points lie, mm; shape (n, 3) to (n,)."""
-    samples = np.linspace(0.0, rod.length, SAMPLES)
-    station = samples[cKDTree(points(rod.centre_line, samples)).query(position)[1]]
-    for _ in range(STEPS):
-        tangent = frames(rod.centre_line, station)[:, 2]
-        ahead = np.einsum("nc,nc->n", position - points(rod.centre_line, station), tangent)
-        station = np.clip(station + ahead, 0.0, rod.length)
-    return np.asarray(station)
 
 
 def own_contact(scene: Scene, pair: ContactPair, bodies: Mapping[str, OwnBody]) -> OwnContact:

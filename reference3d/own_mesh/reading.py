@@ -14,6 +14,7 @@ from __future__ import annotations
 
 import contextlib
 import io
+import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -24,8 +25,10 @@ from numpy.typing import NDArray
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
-from cases.scene import Clamp, Rod, Scene, SceneError
-from reference3d.centre_line import points
+from cases.scene import ENDS, FACES, Clamp, Rod, Scene, SceneError
+from reference3d.centre_line import frames, points
+from reference3d.facing import face_place
+from reference3d.own_mesh.arc_length import arc_lengths
 from reference3d.own_mesh.elements import KINDS, ElementKind
 from reference3d.section_mesh import integrals, section_mesh
 
@@ -35,6 +38,8 @@ IntArray = NDArray[np.int64]
 # how much the volume may differ from section times length, and how far the centroid may be off, over the size of the
 # section (of a curved rod it is a little off the line)
 VOLUME_DIFFERENCE, OFF_PLACE = 0.02, 0.03
+# how far nodes may be off the face that they are said to lie on, over the size of the section
+ON_FACE = 0.01
 AT_A_TIME = 500  # elements
 # of a cell, its corners: the first nodes of whatever order
 CORNERS = {"triangle": 3, "quad": 4}
@@ -193,14 +198,14 @@ def _check(where: str, mesh: RodMesh) -> None:
         raise SceneError(key, found, "orient them, and order their nodes as their format has them")
     share = jacobians * mesh.kind.quadrature[1]
     volume = float(share.sum())
-    expected = integrals(section_mesh(rod.section, 1)).area * rod.length
+    expected = section_area(rod) * rod.length
     if abs(volume - expected) > VOLUME_DIFFERENCE * expected:
         found = f"a volume of {volume:.5g} mm^3"
         raise SceneError(key, found, f"section times length of rod '{rod.name}' is {expected:.5g} mm^3; lengths are mm")
     centroid = np.einsum("eq,eqc->c", share, places) / volume
     middle = points(rod.centre_line, np.linspace(0.0, rod.length, 201)).mean(axis=0)
     apart = float(np.linalg.norm(centroid - middle))
-    if apart > OFF_PLACE * expected**0.5 / rod.length**0.5:
+    if apart > OFF_PLACE * math.sqrt(section_area(rod)):
         found = f"a mesh whose centroid is {apart:.4g} mm from that of the rod"
         raise SceneError(key, found, "the mesh is to lie where the scene has the rod")
 
@@ -236,4 +241,27 @@ def _group(
     if not found:
         raise SceneError(f"{where}, group '{name}'", "no face of the rod's surface in it", "name the rod's own faces")
     element, face = np.array(sorted(found)).T
+    off = _off_place(body, group, body.nodes[np.unique(body.elements[element[:, None], body.kind.faces[face]])])
+    if off > ON_FACE * math.sqrt(section_area(body.rod)):
+        said = f"nodes {off:.3g} mm off the face of rod '{body.rod.name}' that is meant"
+        raise SceneError(f"{where}, group '{name}'", said, "give a group the name of the face that it lies on")
     return FaceGroup(element, face)
+
+
+def _off_place(body: RodMesh, group: str, position: Array) -> float:
+    """How far points are at most from the end section or the lateral face that a group is named after, mm."""
+    rod = body.rod
+    if group in ENDS:
+        station = np.array([0.0 if group == "start" else rod.length])
+        ahead = (position - points(rod.centre_line, station)) @ frames(rod.centre_line, station)[0, 2]
+        return float(np.abs(ahead).max())
+    face = next(face for face in FACES if face == group)
+    place, station = face_place(rod, face), arc_lengths(rod, position)
+    outward = frames(rod.centre_line, station)[:, place.axis]
+    away = np.einsum("nc,nc->n", position - points(rod.centre_line, station), outward)
+    return float(np.abs(away - place.offset).max())
+
+
+def section_area(rod: Rod) -> float:
+    """Area of the rod's section, mm^2."""
+    return integrals(section_mesh(rod.section, 1)).area

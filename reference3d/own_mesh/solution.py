@@ -13,8 +13,9 @@ from numpy.typing import NDArray
 from cases.scene import Scene
 from reference3d.centre_line import frames, points
 from reference3d.facing import face_place, surface
+from reference3d.own_mesh.arc_length import arc_lengths
 from reference3d.own_mesh.body import OwnBody
-from reference3d.own_mesh.contact import OwnContact, arc_lengths
+from reference3d.own_mesh.contact import OwnContact
 from reference3d.own_mesh.elements import KINDS
 from reference3d.section_mesh import located, section_mesh
 from reference3d.solution import ContactPoints, ContactProfile, Cost

@@ -9,7 +9,7 @@ import meshio
 import numpy as np
 import pytest
 
-from cases.scene import Clamp, Line, Material, Rectangle, Rod, Scene, SceneError
+from cases.scene import Clamp, ContactPair, Face, Ground, Line, Material, Rectangle, Rod, RodFace, Scene, SceneError
 from reference3d.own_mesh.reading import read_rods
 
 BAR = {"bar": (0.0, 40.0, -5.0, 5.0, -4.0, 4.0)}
@@ -81,6 +81,29 @@ def test_a_face_that_is_none_of_the_surface_is_refused(tmp_path: Path, scene: Sc
 
     with pytest.raises(SceneError, match=r"group 'bar.start': found no face of the rod's surface in it"):
         read_rods(scene, path)
+
+
+def test_a_face_under_the_name_of_another_is_refused(tmp_path: Path, scene: Scene) -> None:
+    points = HEXAHEDRON * (40.0, 10.0, 8.0) - (0.0, 5.0, 4.0)
+    path = written(tmp_path / "bar.inp", points, [("hexahedron", [list(range(8))])], {"bar.start": [1, 2, 5, 6]})
+
+    with pytest.raises(SceneError, match=r"group 'bar.start': found nodes 40 mm off the face of rod 'bar'"):
+        read_rods(scene, path)
+
+
+@pytest.mark.parametrize(("face", "right"), [("top", True), ("bottom", False), ("left", False)])
+def test_a_lateral_face_lies_where_the_scene_has_it(tmp_path: Path, scene: Scene, face: Face, right: bool) -> None:
+    points = HEXAHEDRON * (40.0, 10.0, 8.0) - (0.0, 5.0, 4.0)
+    sets = {"bar.start": [0, 3, 4, 7], f"bar.{face}": [2, 3, 6, 7]}
+    path = written(tmp_path / "bar.inp", points, [("hexahedron", [list(range(8))])], sets)
+    pair = ContactPair("floor", RodFace("bar", face), Ground(), (0.0, 40.0), 0.0)
+    lying = Scene("lying", scene.rods, scene.supports, (), (pair,))
+
+    if right:
+        assert read_rods(lying, path)["bar"].groups[face].element.tolist() == [0]
+    else:
+        with pytest.raises(SceneError, match=f"group 'bar.{face}': found nodes .* mm off the face"):
+            read_rods(lying, path)
 
 
 def test_other_elements_are_refused(tmp_path: Path, scene: Scene) -> None:
