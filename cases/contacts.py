@@ -96,6 +96,11 @@ class ContactPair:
         """The faces of rods that take part: two, or one on ground."""
         return (self.first, self.second) if isinstance(self.second, RodFace) else (self.first,)
 
+    @property
+    def on_bed(self) -> bool:
+        """Whether what lies opposite is a bed, which yields."""
+        return isinstance(self.second, Ground) and self.second.modulus is not None
+
 
 def given_gap(gap: float | GapTable | RoundGap, station: _Array) -> _Array:
     """The gap at stations along the first rod, mm, shape (n,)."""

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from cases.scene import CentreLine, Clamp, ContactPair, Ground, Helix, Line, Path, Rod, Spline, Vector
+from cases.scene import CentreLine, Clamp, ContactPair, Helix, Line, Path, Rod, Spline, Vector
 from reports.applied_forces import AppliedForces, applied_forces, reactions
 from reports.contact_edges import contact_stretches, edge_resolution
 from reports.equilibrium import equilibrium_residual, equilibrium_resultants
@@ -358,8 +358,7 @@ def contact_quantities(solution: Solution, pair: ContactPair, moved: float) -> C
     resultant = np.asarray(points.normal @ points.force)
     total = float(points.force.sum())
     profile = solution.contact_profile(pair.name)
-    bed = isinstance(pair.second, Ground) and pair.second.modulus is not None
-    apart = points.force * (np.maximum(points.gap, 0.0) if bed else np.abs(points.gap))
+    apart = points.force * (np.maximum(points.gap, 0.0) if pair.on_bed else np.abs(points.gap))
     edges, resolution = _edges(solution, pair, profile, profile.middle)
     edges_outer, outer_resolution = _edges(solution, pair, profile, profile.outer)
     return ContactQuantities(

@@ -8,7 +8,7 @@ small and dense, so that trying another active set costs one small factorisation
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,8 +24,11 @@ MOST_STEPS, SETTLED = 100, 1e-13
 LITTLE, MOST = 1e-6, 0.9
 # Energy that may be left where the steps have run out.
 ACCEPTED = 1e-5
-# How often all points that are wrong about a set may change sides at once, and how often that may leave no fewer.
-MOST_EXCHANGES, PATIENCE = 20, 3
+# By how much springs are made stiffer where steps leave most of the penetration time and again, and how often.
+STIFFENED, MOST_STIFFENED = 10.0, 4
+# How often points that are wrong about a set may change sides; how often in a row all of them may where that leaves no
+# fewer, and what part of them does then.
+MOST_EXCHANGES, PATIENCE, FEWER = 60, 3, 3
 # How far loose rods move on their springs, as a multiple of what they deform.
 SOFT = 1e2
 # Forces, gaps and unbalanced loads this small against the largest may be round-off.
@@ -152,11 +155,13 @@ def unilateral_contact(problem: ContactProblem, settled: bool = True, guess: Boo
     if escaping.any():
         return ContactForces(force, escaping, "refused: contact does not hold what nothing else holds", 0)
     flexibility = _soft_springs(problem)
-    matrix = problem.compliance + problem.motion @ flexibility @ problem.motion.T
-    matrix[np.diag_indices_from(matrix)] += 1.0 / problem.spring
-    pushing = PushingForces(matrix, guess)
+    hanging = problem.compliance + problem.motion @ flexibility @ problem.motion.T
+    pushing = PushingForces(_with_springs(hanging, problem), guess)
     multiplier, left = force, np.inf
-    outcome, size, balance = "stagnated: the multipliers did not settle", 0.0, 0.0
+    outcome, balance = "stagnated: the multipliers did not settle", 0.0
+    largest, size = 0.0, float(np.abs(problem.motion_load).max(initial=0.0))
+    active = np.empty(0, dtype=bool)
+    slow = stiffened = 0
     for _ in range(MOST_STEPS):
         hung = problem.gap + problem.motion @ (motion + flexibility @ problem.motion_load)
         found = pushing.closing(hung - multiplier / problem.spring)
@@ -167,7 +172,9 @@ def unilateral_contact(problem: ContactProblem, settled: bool = True, guess: Boo
         unbalanced = problem.motion.T @ force + problem.motion_load
         motion = motion + flexibility @ unbalanced
         before, multiplier = multiplier, np.where(problem.rigid, force, 0.0)
-        size = max(np.abs(problem.motion_load).max(initial=0.0), (np.abs(problem.motion.T) @ force).max(initial=0.0))
+        # Forces of an interference that a loose rod gives way to vanish: what they began with is their measure.
+        largest = max(largest, float(force.max(initial=0.0)))
+        size = max(size, (np.abs(problem.motion.T) @ force).max(initial=0.0))
         balance = float(np.abs(unbalanced).max(initial=0.0))
         left_before, left = left, _energy_left(problem, multiplier, before)
         if balance <= (BALANCED if settled else ROUGHLY_BALANCED) * size and (
@@ -175,10 +182,44 @@ def unilateral_contact(problem: ContactProblem, settled: bool = True, guess: Boo
         ):
             outcome = "converged"
             break
+        slow = slow + 1 if left > MOST * left_before else 0
+        if slow > PATIENCE and stiffened < MOST_STIFFENED:
+            # Points next to which nothing yields, as at a clamp: their springs must be stiffer still.
+            problem = replace(problem, spring=np.where(problem.rigid, STIFFENED * problem.spring, problem.spring))
+            pushing = PushingForces(_with_springs(hanging, problem), pushing.active, pushing.active_sets)
+            slow, stiffened = 0, stiffened + 1
+        active_before, active = active, pushing.active
+        if settled and np.array_equal(active, active_before):
+            # The set may be the one in the end: what it answers at once takes the steps many.
+            answer = _serving(problem, active, largest, size)
+            if answer is not None:
+                return ContactForces(*answer, "converged", pushing.active_sets + 1)
     # What all these steps leave to do may still be little.
     if outcome != "converged" and left <= ACCEPTED and balance <= 10.0 * ROUND_OFF * size:
         outcome = "converged"
     return ContactForces(force, motion, outcome, pushing.active_sets)
+
+
+def _with_springs(compliance: Array, problem: ContactProblem) -> Array:
+    matrix = compliance.copy()
+    matrix[np.diag_indices_from(matrix)] += 1.0 / problem.spring
+    return matrix
+
+
+def _serving(problem: ContactProblem, active: BoolArray, largest: float, size: float) -> tuple[Array, Array] | None:
+    """Forces and motions that solve the problem if just these points touch; None if they pull or others penetrate.
+
+    largest, size : forces and sums of forces on motions that are zero next to these are round-off
+    """
+    force, motion = ActiveSet(active, problem).settled_forces()
+    opening = problem.gap + problem.compliance @ force + problem.motion @ motion
+    unbalanced = problem.motion.T @ force + problem.motion_load
+    serves = (
+        force.min(initial=0.0) >= -ROUND_OFF * largest
+        and opening[~active].min(initial=0.0) >= -ROUND_OFF * np.abs(problem.gap).max()
+        and np.abs(unbalanced).max(initial=0.0) <= BALANCED * size
+    )
+    return (np.maximum(force, 0.0), motion) if serves else None
 
 
 def _soft_springs(problem: ContactProblem) -> Array:
@@ -198,35 +239,43 @@ class PushingForces:
     """Minimises 1/2 f^T A f + gap^T f over f >= 0 for one gap after another: f >= 0, gap + A f >= 0, one of them zero.
 
     From the set of the gap before all points that are wrong about it change sides at once (primal-dual active set), as
-    long as that leaves fewer of them. It may cycle: more points than an element has freedoms make sets that
-    differ by nothing but round-off. Then Lawson and Hanson's non-negative least squares find the set, which end after
-    finitely many.
+    long as that leaves fewer of them; then the worst of them only, until it does (block principal pivoting: Portugal,
+    Judice, Vicente, Mathematics of Computation 63 (1994) 625-643). Points more than an element has freedoms make sets
+    that differ by little but round-off, among which that may not end. Then Lawson and Hanson's non-negative least
+    squares find the set, which end after finitely many.
 
     Attributes
     ----------
     active_sets : tried so far
     """
 
-    def __init__(self, matrix: Array, guess: BoolArray | None) -> None:
-        self.active_sets = 0
+    def __init__(self, matrix: Array, guess: BoolArray | None, active_sets: int = 0) -> None:
+        self.active_sets = active_sets
         self._guess = guess
         self._matrix = matrix
         self._factor: Array | None = None
         self._active = np.zeros(len(matrix), dtype=bool)
         self._active_factor: tuple[Array, bool] | None = None
+        self._begun = False
+
+    @property
+    def active(self) -> BoolArray:
+        """The points that the last forces join, shape (n,)."""
+        return self._active
 
     def closing(self, gap: Array) -> Array | None:
         """The forces for a gap, shape (n,); None where no set of points serves."""
-        if self.active_sets == 0:
+        if not self._begun:
+            self._begun = True
             self._choose(gap < 0.0 if self._guess is None else self._guess)
         force, wrong = self._forces(gap)
         fewest, patience = len(wrong), PATIENCE
         for _ in range(MOST_EXCHANGES):
-            if not len(wrong) or not patience:
+            if not len(wrong):
                 break
-            self._exchange(wrong)
+            self._exchange(wrong if patience else wrong[: max(1, len(wrong) // FEWER)])
             force, wrong = self._forces(gap)
-            patience = PATIENCE if len(wrong) < fewest else patience - 1
+            patience = PATIENCE if len(wrong) < fewest else max(0, patience - 1)
             fewest = min(fewest, len(wrong))
         if len(wrong):
             self._choose(self._least_squares(gap) > 0.0)

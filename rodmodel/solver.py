@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from cases.scene import Ground, Rod, Scene
+from cases.scene import Rod, Scene
 from rodmodel.assembly import AssembledRod, ElementStore, stored_energy
 from rodmodel.borders import Edge, Rates, border_plan, edge_rates, natural_mesh, placed_meshes, split_at
 from rodmodel.contact import ContactForces, unilateral_contact
@@ -104,7 +104,7 @@ def _judged(contact: MovedContact, states: Mapping[str, RodState], stored_energy
     penetrating = 0.5 * sum(
         float(springs[contact.system.points[pair.name]].sum())
         for pair in contact.system.scene.contacts
-        if not (isinstance(pair.second, Ground) and pair.second.modulus is not None)
+        if not pair.on_bed
     )
     if not problem.rigid.any() and contact.outcome == "converged" and penetrating > PENALTY_SHARE * stored_energy:
         share = penetrating / stored_energy

@@ -48,8 +48,6 @@ from rodmodel.section import Fields, section_values
 STIFFER = 1e3
 # Rods count as moved from this part of what the farthest moves on.
 MOVED = 1e-6
-# Springs of multipliers are at least this part as stiff in a short interval as in the longest.
-SHORT = 0.3
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -173,7 +171,7 @@ def contact_system(
         spring[part] = _springs(scene, pair, grids[pair.name], multipliers)
         weight = grids[pair.name].weight.ravel()
         rigid[part] &= weight > NO_SHARE * weight.max()
-        if isinstance(pair.second, Ground) and pair.second.modulus is not None:
+        if pair.on_bed:
             rigid[part] = False
     problem = ContactProblem(matrix, gap, spring, np.ascontiguousarray(free[:, :-1].T), free[:, -1], rigid)
     return ContactSystem(scene, rods, grids, points, found, places, problem, joints, on_joints)
@@ -189,11 +187,10 @@ def initial_gap(scene: Scene, pair: ContactPair, grid: ContactGrid) -> Array:
 
 def _springs(scene: Scene, pair: ContactPair, grid: ContactGrid, multipliers: bool) -> Array:
     """c_n w of the contact points, N/mm, shape (n_points,)."""
-    weight = grid.weight.copy()
-    if multipliers:
-        # What multipliers find does not depend on the springs; those of short intervals may as well be as stiff.
-        largest = weight.max(axis=(1, 2), keepdims=True)
-        weight *= np.maximum(1.0, SHORT * largest.max() / np.maximum(largest, NO_SHARE * largest.max()))
+    weight = grid.weight
+    if multipliers and not pair.on_bed:
+        # What multipliers find does not depend on the springs, and alike ones leave the least at singular corners.
+        weight = np.where(weight > NO_SHARE * weight.max(), weight.max(), weight)
     # Where what the faces share ends in a corner, points have no share; they must not be without a spring.
     return np.asarray(np.maximum(weight, NO_SHARE * weight.max()).ravel() * _stiffness(scene, pair, multipliers))
 
