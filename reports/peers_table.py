@@ -114,7 +114,11 @@ def peers_summary(runs: Sequence[CaseRun | Failure]) -> tuple[str, ...]:
 def _missing(peers: Sequence[PeerRun]) -> tuple[str, ...]:
     if not peers:
         return tuple(f"{peer}: {NOT_ASKED}" for peer in PEERS)
-    return tuple(f"{each.peer}: {_why(each)}" for each in peers if each.answer is None)
+    return tuple(_sentence(each.peer, _why(each)) for each in peers if each.answer is None)
+
+
+def _sentence(peer: str, reason: str) -> str:
+    return reason if reason.startswith(peer) else f"{peer}: {reason}"
 
 
 def _why(run: PeerRun) -> str:
@@ -133,7 +137,9 @@ def _cell(row: SideBySide, value: float | None) -> str:
     away = difference(row, value)
     if away is None:
         return number(value)
-    text = f"{away:+.3f} mm" if row.quantity == "contact_centre" else f"{100.0 * away:+.3f} %"
+    # adding zero takes the sign of a zero away
+    shown = round(away if row.quantity == "contact_centre" else 100.0 * away, 3) + 0.0
+    text = f"{shown:{'+' if shown else ''}.3f} {'mm' if row.quantity == 'contact_centre' else '%'}"
     return f"{number(value)} ({text})".replace("-", "\u2212")
 
 

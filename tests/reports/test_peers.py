@@ -163,9 +163,10 @@ def test_the_table_has_a_column_for_each_answer_and_a_sentence_for_each_other_pe
     assert table.columns[-1] == "Peer 1.0"
     assert table.rows[0][0] == "Contact force, overlap, N"
     assert table.rows[0][1][1:] == ("319.750 \u00b1 0.156 %", "5.00000 (\u221298.436 %)")
+    assert table.rows[1][1][0] == "250.000 (0.000 mm)"  # no sign where there is no difference
     assert table.rows[-1][1][-1] == NO_VALUE
     assert [cost.solver for cost in table.costs][-1] == "Peer 1.0"
-    assert table.missing == ("Other: Other is not installed",)
+    assert table.missing == ("Other is not installed",)
     assert json.loads(json.dumps(as_json(run.side_by_side, run.peers, run.rod.quantities), allow_nan=False))
 
 
