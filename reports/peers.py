@@ -21,7 +21,7 @@ from cases.scene import Clamp, Scene, SceneError, station_of
 from reports.cache import Cache
 from reports.code_version import code_version
 from reports.comparison import Estimate, Extrapolate, sequence_estimate
-from reports.processes import ProcessFailed, Progress, in_own_process
+from reports.processes import ProcessFailed, Progress, failure_reason, in_own_process
 from reports.quantities import Quantities
 from reports.solution import Array
 
@@ -112,15 +112,18 @@ def ask_peers(
     stations : by rod, arc lengths at which displacements are wanted, mm, shape (n,)
     cache : where answers are looked for and kept
     """
-    return tuple(_ask(peer, scene, stations, progress, cache) for peer in PEERS)
+    found = []
+    for peer in PEERS:
+        try:
+            found.append(_ask(peer, scene, stations, progress, cache))
+        except Exception as error:  # noqa: BLE001 (whatever is wrong with a peer, the case has its own answers)
+            found.append(PeerRun(peer, None, f"failed: {failure_reason(error)}"))
+    return tuple(found)
 
 
 def _ask(peer: str, scene: Scene, stations: Mapping[str, Array], progress: Progress, cache: Cache | None) -> PeerRun:
     module = PEERS[peer]
-    try:
-        absent: str = import_module(module).installed()
-    except ImportError as error:
-        absent = str(error)
+    absent: str = import_module(module).installed()
     if absent:
         return PeerRun(peer, None, absent)
     question = code_version(module), _version(module), scene, dict(stations)

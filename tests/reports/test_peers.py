@@ -111,6 +111,14 @@ def test_a_peer_without_an_answer_says_why(case_run: CaseRun, peer, answer: dict
     assert found.reason.startswith(reason)
 
 
+def test_a_peer_that_cannot_even_be_asked_costs_the_case_nothing(
+    case_run: CaseRun, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(peers_module, "PEERS", {"Peer": "no_such_module"})
+
+    assert ask(case_run).reason.startswith("failed: ModuleNotFoundError")
+
+
 @pytest.mark.usefixtures("here")
 def test_an_answer_is_kept_and_one_that_did_not_converge_is_not(case_run: CaseRun, peer, tmp_path: Path) -> None:
     for outcome, kept in (("converged", True), ("refused: not done within 1 s", False)):
