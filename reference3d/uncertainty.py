@@ -17,6 +17,8 @@ Behaviour = Literal["monotone", "oscillatory", "diverging", "constant"]
 # safety factors of V&V 20: three meshes that converge as they should, and anything else
 SAFETY_ASYMPTOTIC = 1.25
 SAFETY_OTHERWISE = 3.0
+# how far the observed order may be from the formal one, as a part of it, for meshes to converge as they should
+AS_IT_SHOULD = 0.1
 # observed orders outside this range are searched no further
 LOWEST_ORDER, HIGHEST_ORDER = 1e-3, 50.0
 
@@ -31,7 +33,7 @@ class GridConvergence:
     behaviour : 'monotone'; 'oscillatory' (differences change sign); 'diverging' (the differences do not fall
         as any power of the mesh size); 'constant' (equal up to round-off)
     asymptotic : True if constant, or monotone with an observed order of at least half the formal one; only
-        then is the band a grid convergence index with factor 1.25
+        then is the band a grid convergence index
     observed_order : p, nan unless monotone
     extrapolated : limit for vanishing mesh size with the observed order; `value` unless asymptotic
     uncertainty : half width of the band about `value`, and about `extrapolated`, in which the limit is expected, in the
@@ -53,9 +55,11 @@ def grid_convergence(
 
     An observed order above the formal one is not trusted, as it comes from a last change that is small by chance: the
     index then uses the formal order, and of the errors on the finest mesh that either change implies the larger one.
-    The limit is extrapolated with the observed order, so that such a last change hardly moves it.
-    Where the sequence oscillates, diverges or converges at less than half the formal order, the band is three times
-    the largest change between any two of the meshes, and nothing is extrapolated.
+    The limit is extrapolated with the observed order, so that such a last change hardly moves it. The factor of safety
+    is 1.25 where the observed order is within a tenth of the formal one, and 3 where it is not (W. L. Oberkampf,
+    C. J. Roy, Verification and Validation in Scientific Computing, 2010, section 8.7). Where the sequence oscillates,
+    diverges or converges at less than half the formal order, the band is three times the largest change between any
+    two of the meshes, and nothing is extrapolated.
 
     Parameters
     ----------
@@ -93,7 +97,8 @@ def grid_convergence(
         _implied_error(second, sizes[1] / sizes[2], 1.0, trusted),
     )
     extrapolated = fine - _implied_error(second, sizes[1] / sizes[2], 1.0, order)
-    return GridConvergence(fine, "monotone", True, order, extrapolated, SAFETY_ASYMPTOTIC * max(map(abs, errors)))
+    safety = SAFETY_ASYMPTOTIC if abs(order - formal_order) <= AS_IT_SHOULD * formal_order else SAFETY_OTHERWISE
+    return GridConvergence(fine, "monotone", True, order, extrapolated, safety * max(map(abs, errors)))
 
 
 def _implied_error(change: float, larger: float, smaller: float, order: float) -> float:

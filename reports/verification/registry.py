@@ -8,6 +8,7 @@ from rich.progress import Progress as Bars
 
 from reports.processes import Progress, in_own_process
 from reports.verification import (
+    bands,
     bending,
     contact_3d,
     curved,
@@ -30,6 +31,7 @@ GROUPS: tuple[Group, ...] = (
     solid.GROUP,
     *solid_elements.GROUPS,
     *contact_3d.GROUPS,
+    bands.GROUP,
 )
 CHECKS = {check.name: check for group in GROUPS for check in group.checks}
 

@@ -78,13 +78,21 @@ def test_the_uncertainty_from_three_meshes_covers_the_difference_to_truth(paper_
     ]
     for quantity, expected, relative in quantities:
         convergence = grid_convergence(tuple(quantity(solution) for solution in solutions), sizes, order)
-        assert abs(convergence.value - expected) <= convergence.uncertainty + relative * expected
+        for found in (convergence.value, convergence.extrapolated):
+            assert abs(found - expected) <= convergence.uncertainty + relative * expected
         # and the band is of use
         assert convergence.uncertainty < 5e-4 * expected
+    missed = stations = 0
     for rod in range(2):
         curves = [deflections(solution, values)[rod] for solution in solutions]
         expected = curves[0][1]
-        for station in range(5, len(expected), 5):
-            convergence = grid_convergence(tuple(float(curve[0][station]) for curve in curves), sizes, order)
-            allowance = values["uncertainty"]["deflection_relative"] * np.abs(expected).max()
-            assert abs(convergence.value - expected[station]) <= convergence.uncertainty + allowance
+        largest = np.abs(expected).max()
+        allowance = values["uncertainty"]["deflection_relative"] * largest
+        for found, wanted in zip(zip(*(curve[0].tolist() for curve in curves), strict=True), expected, strict=True):
+            convergence = grid_convergence(found, sizes, order)
+            apart = max(abs(convergence.value - wanted), abs(convergence.extrapolated - wanted))
+            missed += apart > convergence.uncertainty + allowance
+            stations += 1
+            assert convergence.uncertainty < 5e-4 * largest
+    # what a band of 95 % promises
+    assert missed <= 0.05 * stations, f"{stations - missed} of {stations} bands hold the independent value"

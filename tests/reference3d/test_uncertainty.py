@@ -48,15 +48,22 @@ def test_an_order_above_the_formal_one_is_not_trusted():
     assert capped.observed_order == pytest.approx(4.0)
     assert capped.extrapolated == pytest.approx(5.0)
     assert capped.uncertainty > 3.0 * trusted.uncertainty
-    # the error that the larger change implies: from the coarse mesh to the next
-    assert capped.uncertainty == pytest.approx(1.25 * (6.0**4 - 3.0**4) / (3.0**1.5 - 1.5**1.5))
+    # thrice the error that the larger change implies: from the coarse mesh to the next
+    assert capped.uncertainty == pytest.approx(3.0 * (6.0**4 - 3.0**4) / (3.0**1.5 - 1.5**1.5))
+
+
+@pytest.mark.parametrize(("order", "factor"), [(1.85, 1.25), (1.75, 3.0)])
+def test_an_order_far_from_the_formal_one_is_less_certain(order, factor):
+    found = grid_convergence(tuple(5.0 + size**order for size in SIZES), SIZES, formal_order=2.0)
+
+    assert found.uncertainty == pytest.approx(factor * 2.0**order)
 
 
 def test_a_last_change_that_is_small_by_chance_does_not_make_the_band_small():
     by_chance = grid_convergence((1.0, 1.1, 1.1 + 1e-6), SIZES, 2.0)
 
-    # 0.1 = C (6^2 - 3^2), and 1.25 C 2^2
-    assert by_chance.uncertainty == pytest.approx(1.25 * 4.0 * 0.1 / 27.0)
+    # 0.1 = C (6^2 - 3^2), and 3 C 2^2
+    assert by_chance.uncertainty == pytest.approx(3.0 * 4.0 * 0.1 / 27.0)
     assert by_chance.extrapolated == pytest.approx(by_chance.value, abs=1e-6)
 
 

@@ -15,14 +15,18 @@ import reference3d
 from reference3d import grading
 from reports import command_line
 from reports.processes import ProcessFailed
-from reports.verification import bending, contact_3d, curved, published, solid, solid_elements, torsion, wording
+from reports.verification import bands, bending, contact_3d, curved, published, solid, solid_elements, torsion, wording
 from reports.verification.check import Check, Outcome, Reference
 from reports.verification.page import FILE_NAME, render, write_verification
 from reports.verification.registry import CHECKS, GROUPS
 
 ALL = [check for group in GROUPS for check in group.checks]
 # 3D on several or on fine meshes
-LONG = {check.name for group in (solid.GROUP, *solid_elements.GROUPS[1:], *contact_3d.GROUPS) for check in group.checks}
+LONG = {
+    check.name
+    for group in (solid.GROUP, *solid_elements.GROUPS[1:], *contact_3d.GROUPS, bands.GROUP)
+    for check in group.checks
+}
 
 
 def outcome_at_its_level(check: Check) -> Outcome:
