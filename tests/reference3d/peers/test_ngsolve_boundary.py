@@ -7,6 +7,7 @@ from cases.loader import load_case
 from cases.scene import SceneError
 from reference3d.peers.ngsolve_grading import COARSE, graded
 from reference3d.peers.ngsolve_solver import answer, installed, solve_condensed
+from reference3d.peers.ngsolve_tuned import TUNED
 
 pytestmark = pytest.mark.skipif(installed() != "", reason="NGSolve is not installed")
 
@@ -14,8 +15,8 @@ pytestmark = pytest.mark.skipif(installed() != "", reason="NGSolve is not instal
 def test_its_energy_of_penetration_gives_the_forces_of_the_active_set():
     from reference3d.peers.ngsolve_boundary import solve_with_contact_boundary
 
-    scene = load_case("two-cantilevers-e50-g05").scene
-    hexahedra = graded(scene, COARSE, {"overlap": (200.0, 210.0)})
+    case = "two-cantilevers-e50-g05"
+    scene, hexahedra = load_case(case).scene, TUNED[case, 0.1]
     stations = {"upper": np.array([130.0])}
 
     own, condensed = (
