@@ -137,6 +137,19 @@ def factorise(
     )
 
 
+def layered_bytes(plane_size: int, unknowns: int, layers: int, kinds: int) -> float:
+    """Memory that the stiffness of a rod and its factor take at their largest.
+
+    Parameters
+    ----------
+    plane_size, unknowns : unknowns of a plane, all of them and those not zero by symmetry
+    layers, kinds : number of layers, and of different thicknesses among them
+    """
+    # one matrix of three planes a kind; of each kind and the two at clamps seven blocks, of each layer two, and some
+    # while one is worked on
+    return 8.0 * (9.0 * kinds * plane_size**2 + (7.0 * (kinds + 2.0) + 2.0 * layers + 12.0) * unknowns**2)
+
+
 def solve(factor: LayeredFactor, force: Array) -> Array:
     """Displacement under nodal forces.
 

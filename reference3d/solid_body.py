@@ -5,7 +5,7 @@ Unknowns are the components of displacement in the frame of each plane, in array
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -24,7 +24,7 @@ Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
 # layers of lengths that differ by less, over the longest, are alike
-SAME_LENGTH = 1e-11
+SAME_LENGTH = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,11 +72,11 @@ class SolidBody:
         """Number of the layer border at an arc length, where something acts or holds."""
         return int(np.argmin(np.abs(self.borders - station)))
 
-    def layer_matrix(self, kind: int, motions: csr_array | None = None) -> Array:
-        """Stiffness of the layers of a kind, beds included, on their start, middle and end plane; N/mm.
+    def assembly(self, motions: csr_array | None = None) -> Callable[[int], Array]:
+        """Gives the stiffness of the layers of a kind, beds included, on their start, middle and end plane, N/mm.
 
         motions : of a plane that are possible, orthonormal columns with one entry a row at most, shape (m, n); all
-            unknowns if None. The result has shape (3 n, 3 n).
+            unknowns if None. Matrices have shape (3 n, 3 n).
         """
         count = 3 * len(self.section.nodes)
         size, column, value = count, np.arange(count), np.ones(count)
@@ -84,18 +84,26 @@ class SolidBody:
             size, column, value = motions.shape[1], np.zeros(count, dtype=np.int64), np.zeros(count)
             rows, columns = motions.tocoo().coords
             column[rows], value[rows] = columns, motions.tocoo().data
-        matrix = np.zeros(9 * size * size)
-        for nodes, matrices in (
-            (self.section.quads, self.layers[kind].stiffness),
-            *((springs.edges, springs.stiffness) for springs in self.springs[kind]),
-        ):
+
+        def places(nodes: IntArray) -> tuple[IntArray, Array]:
             unknown = (3 * nodes[:, None, :, None] + np.arange(3)).repeat(3, axis=1).reshape(len(nodes), -1)
             place = column[unknown] + size * np.repeat(np.arange(3), unknown.shape[1] // 3)
             share = value[unknown]
             entry = 3 * size * place[:, :, None] + place[:, None, :]
-            scaled = matrices * share[:, :, None] * share[:, None, :]
-            matrix += np.bincount(entry.ravel(), scaled.ravel(), 9 * size * size)
-        return matrix.reshape(3 * size, 3 * size)
+            return entry.ravel(), share[:, :, None] * share[:, None, :]
+
+        solid_entry, solid_share = places(self.section.quads)
+
+        def matrix(kind: int) -> Array:
+            forces = (self.layers[kind].stiffness * solid_share).ravel()
+            found = np.zeros(9 * size * size)
+            found += np.bincount(solid_entry, forces, len(found))
+            for springs in self.springs[kind]:
+                entry, share = places(springs.edges)
+                found += np.bincount(entry, (springs.stiffness * share).ravel(), len(found))
+            return found.reshape(3 * size, 3 * size)
+
+        return matrix
 
     def internal_forces(self, displacement: Array) -> tuple[Array, Array]:
         """Nodal forces that the solid and that the beds need for a displacement; arrays of unknowns."""

@@ -103,7 +103,7 @@ def scene_mirrors(
     for normal in first.axes[0, :2]:
         found: dict[str, Mirror] = {}
         for name, body in bodies.items():
-            mirror = _mirror(body, normal, first.points[0])
+            mirror = mirror_in(body, normal, first.points[0])
             if mirror is None or not _is_symmetric(scene, body, held[name], mirror):
                 break
             found[name] = mirror
@@ -113,7 +113,7 @@ def scene_mirrors(
     return {}
 
 
-def _mirror(body: SolidBody, normal: Array, point: Array) -> Mirror | None:
+def mirror_in(body: SolidBody, normal: Array, point: Array) -> Mirror | None:
     """The mirror of a rod's sections in a plane; None if that does not take the mesh to itself."""
     size = max(body.rod.length, float(np.ptp(body.section.nodes)))
     if np.abs((body.points - point) @ normal).max() > SAME_PLACE * size:

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,6 +27,18 @@ IntArray = NDArray[np.int64]
 
 # difference of matrices, over their largest entry, that is round-off
 SAME_MATRIX = 1e-12
+
+
+class Inverse(Protocol):
+    """What answers loads on a rod."""
+
+    def solve(self, force: Array) -> Array:
+        """Displacements under loads (N), shape (n_planes, m, n)."""
+        ...
+
+    def compliance(self, loads: csr_array) -> Array:
+        """Work of every load, a row each, on the displacement of every other, N mm, shape (n_loads, n_loads)."""
+        ...
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,14 +76,14 @@ class Response:
         skeleton that moves the rod, shape (n_planes, n_nodes, 3, 1 + n_moving)
     places : numbers of these motions, shape (n_moving,)
     on_skeleton : forces that the rod exerts on them with every column, shape (n_moving, 1 + n_moving)
-    factor : where the rod takes part in contact
+    factor : what gave the columns, where the rod takes part in contact
     """
 
     load: Array
     columns: Array
     places: IntArray
     on_skeleton: Array
-    factor: Factor | None
+    factor: Inverse | None
 
 
 @dataclass(frozen=True, eq=False)
@@ -101,7 +114,7 @@ def respond(
     scene: Scene,
     body: SolidBody,
     held: Mapping[int, Hold],
-    factor: Factor,
+    factor: Inverse,
     touching: bool,
     loose: Sequence[Loose],
 ) -> Response:
@@ -208,7 +221,7 @@ def share_factor(
         if same and _alike(body, other, planes, held):
             return factor
     symmetric = None if mirror is None else mirror.symmetric
-    return Factor(factorise(lambda kind: body.layer_matrix(kind, symmetric), body.kind, planes), mirror)
+    return Factor(factorise(body.assembly(symmetric), body.kind, planes), mirror)
 
 
 def _alike(

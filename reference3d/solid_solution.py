@@ -130,6 +130,7 @@ class SolidSolution:
     residual : largest nodal force out of balance relative to the rod's largest internal nodal force
     representative_size : cube root of the mean element volume, mm (h of ASME V&V 20)
     refinement : k of `section_mesh` and `layers`
+    solver : 'direct', or 'conjugate gradients' where a factor would not have fitted into memory
     reactions : force and moment of what holds a rod at a layer border, by rod and number of the border, global
     """
 
@@ -142,6 +143,7 @@ class SolidSolution:
     residual: float
     representative_size: float
     refinement: int
+    solver: str
     rods: dict[str, SolidRod]
     reactions: dict[tuple[str, int], Array]
     pairs: dict[str, SolidPair]

@@ -1,7 +1,8 @@
 """Solve a scene of rods of any kind, supported, joined, loaded and in contact in any way, as 3D solids.
 
 Each rod is factorised once (`solid_responses`), then contact is solved in compliance form (`solid_forces`). Where a
-scene is its own image in a plane, half of the motions are solved for (`solid_mirror`).
+scene is its own image in a plane, half of the motions are solved for (`solid_mirror`); where a factor would not fit
+into memory, conjugate gradients take its place (`solid_iterative`).
 """
 
 from __future__ import annotations
@@ -16,14 +17,24 @@ from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from cases.scene import Scene, SceneError
-from reference3d.holds import holds, loose_rods, stay
+from reference3d.holds import Hold, Loose, holds, loose_rods, stay
 from reference3d.plane_chain import HeldPlane, factor_bytes
 from reference3d.section_mesh import section_extents
 from reference3d.solid_body import SolidBody, solid_body
 from reference3d.solid_contact import SolidContact, solid_contact
 from reference3d.solid_forces import ContactForces, contact_forces, fields
-from reference3d.solid_mirror import Mirror, contact_partners, scene_mirrors
-from reference3d.solid_responses import Factor, Response, held_planes, on_nodes, respond, share_factor, skeleton
+from reference3d.solid_iterative import Grid, IterativeFactor, interpolation, iterative_bytes
+from reference3d.solid_mirror import Mirror, contact_partners, mirror_in, scene_mirrors
+from reference3d.solid_responses import (
+    Factor,
+    Inverse,
+    Response,
+    held_planes,
+    on_nodes,
+    respond,
+    share_factor,
+    skeleton,
+)
 from reference3d.solid_solution import SolidPair, SolidRod, SolidSolution
 from reference3d.solution import Cost
 
@@ -77,18 +88,26 @@ def solve_solid(scene: Scene, refinement: int, located: SolidSolution | None = N
     }
     planes = {name: held_planes(own, mirrors.get(name)) for name, own in kept_still.items()}
     touching = {face.rod for pair in scene.contacts for face in pair.faces}
+    coarse: dict[str, SolidBody] = {}
     kept = 0.0
     for name, body in bodies.items():
-        need = _require_memory(body, mirrors.get(name), planes[name], kept)
+        need, instead = _memory(scene, body, mirrors.get(name), planes[name], refinement, kept)
         kept += need if name in touching else 0.0
+        if instead is not None:
+            coarse[name] = instead
     ready = time.perf_counter()
     responses: dict[str, Response] = {}
     factors: list[tuple[SolidBody, Mapping[int, HeldPlane], Factor]] = []
     for name, body in bodies.items():
-        factor = share_factor(body, planes[name], mirrors.get(name), factors)
-        responses[name] = respond(scene, body, kept_still[name], factor, name in touching, loose)
-        if name in touching:
-            factors.append((body, planes[name], factor))
+        inverse: Inverse
+        if name in coarse:
+            own = [each for each in loose if each.alone and name in each.rods]
+            inverse = _iterative(scene, body, kept_still[name], mirrors.get(name), coarse[name], own)
+        else:
+            inverse = share_factor(body, planes[name], mirrors.get(name), factors)
+            if name in touching:
+                factors.append((body, planes[name], inverse))
+        responses[name] = respond(scene, body, kept_still[name], inverse, name in touching, loose)
     moving = skeleton(scene, responses, loose)
     candidates = [_candidates(scene, contact, located) for contact in contacts]
     candidates = [may | may[partner] for may, partner in zip(candidates, partners, strict=True)]
@@ -123,8 +142,7 @@ def solve_solid(scene: Scene, refinement: int, located: SolidSolution | None = N
         volume += float(sum((body.kind == kind).sum() * layer.volume.sum() for kind, layer in enumerate(body.layers)))
         elements += len(body.kind) * len(body.section.quads)
         mirror = mirrors.get(name)
-        free_of_plane = 3 * len(body.section.nodes) if mirror is None else mirror.symmetric.shape[1]
-        unknowns += body.shape[0] * free_of_plane
+        unknowns += body.shape[0] * _plane_size(body, mirror)
         unknowns -= sum(int(plane.fixed.sum()) for plane in held_planes(held[name], mirror).values())
         rods[name] = SolidRod(body, displaced)
     pairs, mismatch, penetrating = {}, 0.0, 0.0
@@ -153,6 +171,7 @@ def solve_solid(scene: Scene, refinement: int, located: SolidSolution | None = N
         residual=residual,
         representative_size=(volume / elements) ** (1.0 / 3.0),
         refinement=refinement,
+        solver="conjugate gradients" if coarse else "direct",
         rods=rods,
         reactions=reactions,
         pairs=pairs,
@@ -177,16 +196,69 @@ def _partners(contact: SolidContact, bodies: Mapping[str, SolidBody], mirrors: M
     return np.arange(len(contact.place)) if found is None else found
 
 
-def _require_memory(body: SolidBody, mirror: Mirror | None, held: Mapping[int, HeldPlane], kept: float) -> float:
-    """Memory that a body's factor takes; SceneError with the numbers if there is too little beside what is kept."""
-    size = 3 * len(body.section.nodes) if mirror is None else mirror.symmetric.shape[1]
-    need = factor_bytes(size, body.kind, held)
+def _memory(
+    scene: Scene,
+    body: SolidBody,
+    mirror: Mirror | None,
+    held: Mapping[int, HeldPlane],
+    refinement: int,
+    kept: float,
+) -> tuple[float, SolidBody | None]:
+    """Memory that solving for a body takes, and the coarser mesh with which it is iterated where a factor is too large.
+
+    kept : memory in use by other bodies
+
+    Raises
+    ------
+    SceneError
+        with the numbers, if there is too little memory for either.
+    """
     present = physical_memory() - kept
-    if need > MEMORY_SHARE * present:
-        found = f"{body.shape[0] * size} unknowns that take {need / 1e9:.0f} GB where there are {present / 1e9:.0f}"
-        remedy = "the 3D reference needs a machine with more memory; use --model rod"
-        raise SceneError(f"rods.{body.rod.name}", found, remedy)
-    return need
+    need = factor_bytes(_plane_size(body, mirror), body.kind, held)
+    if need <= MEMORY_SHARE * present:
+        return need, None
+    for coarser in range((refinement + 1) // 2, 0 if refinement > 1 else 1, -1):
+        other = solid_body(scene, body.rod, coarser)
+        iterated = iterative_bytes(int(np.prod(body.shape)))
+        iterated += factor_bytes(_plane_size(other, _same(other, mirror)), other.kind, {})
+        if iterated <= MEMORY_SHARE * present:
+            return iterated, other
+    unknowns = body.shape[0] * _plane_size(body, mirror)
+    found = f"{unknowns} unknowns that take {need / 1e9:.0f} GB where there are {present / 1e9:.0f}"
+    remedy = "the 3D reference needs a machine with more memory; use --model rod"
+    raise SceneError(f"rods.{body.rod.name}", found, remedy)
+
+
+def _plane_size(body: SolidBody, mirror: Mirror | None) -> int:
+    """Unknowns of a plane that are solved for."""
+    return 3 * len(body.section.nodes) if mirror is None else int(mirror.symmetric.shape[1])
+
+
+def _same(body: SolidBody, mirror: Mirror | None) -> Mirror | None:
+    """The mirror in the same plane on another mesh of the rod."""
+    return None if mirror is None else mirror_in(body, mirror.normal, mirror.point)
+
+
+def _iterative(
+    scene: Scene,
+    body: SolidBody,
+    held: Mapping[int, Hold],
+    mirror: Mirror | None,
+    coarse: SolidBody,
+    loose: list[Loose],
+) -> IterativeFactor:
+    """What iterates for a rod with its factor on a coarser mesh.
+
+    loose : the rod, if nothing but contact holds it
+    """
+    on_coarse = holds(scene, coarse)
+    for each in loose:
+        kept_still = stay(coarse, on_coarse, each)
+        on_coarse[kept_still.border] = kept_still
+    other = _same(coarse, mirror)
+    factor = share_factor(coarse, held_planes(on_coarse, other), other, [])
+    planes = {2 * border: hold.plane for border, hold in held.items()}
+    return IterativeFactor(Grid(body, planes, mirror), factor, coarse.shape, interpolation(coarse, body))
 
 
 def physical_memory() -> float:

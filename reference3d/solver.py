@@ -28,14 +28,15 @@ from reference3d.contact import (
     solve_nested,
     without_penetration,
 )
-from reference3d.factor import compliance
+from reference3d.factor import compliance, layered_bytes
 from reference3d.factor import solve as solve_layers
 from reference3d.field import Field, mirrored
 from reference3d.frames import is_symmetric, pair_overlap, rod_frame
+from reference3d.grading import rod_borders
 from reference3d.quadratic import line_nodes
 from reference3d.scope import clamps, rectangle, require_treatable
 from reference3d.solid_solution import SolidSolution
-from reference3d.solid_solver import solve_solid
+from reference3d.solid_solver import MEMORY_SHARE, physical_memory, solve_solid
 from reference3d.solution import Cost, PairResult, RodResult, Solution
 
 Array = NDArray[np.float64]
@@ -81,7 +82,7 @@ def solve(
     if refinement < 1:
         raise ValueError(f"refinement: found {refinement}; a whole number of at least 1 is needed")
     _require_compressible(scene)
-    if _is_clamped_bars(scene):
+    if _is_clamped_bars(scene) and bars_bytes(scene, refinement) <= MEMORY_SHARE * physical_memory():
         return _solve_bars(scene, refinement, located if isinstance(located, Solution) else None, contact_of)
     if contact_of != NODES:
         raise ValueError(f"contact_of: found '{contact_of}'; only clamped, parallel bars have other than '{NODES}'")
@@ -112,6 +113,19 @@ def _solve_bars(scene: Scene, refinement: int, located: Solution | None, contact
         candidates = [np.ones_like(chosen) for chosen in candidates]
     found = _Found(forces, given_way, gaps, fields, outcome, solutions, steps)
     return _collect(scene, refinement, symmetric, bodies, nodes, found, (begin, ready))
+
+
+def bars_bytes(scene: Scene, refinement: int) -> float:
+    """Memory that the factors of a scene of clamped bars take; `solid_solver` can do with less."""
+    symmetric, need = is_symmetric(scene), 0.0
+    for rod in scene.rods:
+        borders = rod_borders(scene, rod, refinement, symmetric)
+        across, up = 2 * len(borders.x) - 1, 2 * len(borders.y) - 1
+        lengths = np.diff(borders.s)
+        kinds = len(np.unique(np.round(lengths / lengths.max(), 11)))
+        full = 3 * across * up
+        need += layered_bytes(full, full - up * symmetric, len(lengths), kinds)
+    return need
 
 
 def _is_clamped_bars(scene: Scene) -> bool:

@@ -6,7 +6,7 @@ from scipy.sparse import csc_array, random_array
 
 from cases.scene import Material
 from reference3d.elasticity import LayeredStiffness
-from reference3d.factor import compliance, factorise, solve
+from reference3d.factor import compliance, factorise, layered_bytes, solve
 
 ENDS = [(True, False), (False, True), (True, True)]
 
@@ -64,3 +64,15 @@ def test_a_stiffness_that_is_not_positive_definite_is_refused(stiffness):
 
     with pytest.raises(np.linalg.LinAlgError, match="not positive definite"):
         factorise(flipped, np.arange(stiffness.plane_size), True, False, reverse=False)
+
+
+def test_the_memory_of_a_factor_is_foreseen(stiffness):
+    size, layers = stiffness.plane_size, len(stiffness.kind)
+
+    factor = factorise(stiffness, np.arange(size), True, False, reverse=False)
+
+    groups = (factor.middle, factor.middle_coupling, factor.border, factor.border_coupling)
+    kept = stiffness.matrices.nbytes + sum(block.nbytes for group in groups for block in group)
+    foreseen = layered_bytes(size, size, layers, len(stiffness.matrices))
+    # besides, the condensed matrix of every kind, a second clamped kind, and what a layer takes while it is worked on
+    assert kept <= foreseen <= kept + 8.0 * size**2 * (4.0 * len(factor.middle) + 7.0 + 12.0)

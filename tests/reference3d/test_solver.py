@@ -19,7 +19,7 @@ from cases.scene import (
     SceneError,
     SectionForce,
 )
-from reference3d import body, solver
+from reference3d import SolidSolution, body, solver
 from reference3d.field import displacement
 from reference3d.solver import solve
 
@@ -379,6 +379,15 @@ def test_a_nearly_incompressible_rod_is_refused_by_name(cantilever):
 
     with pytest.raises(SceneError, match=r"rods\.rod\.material\.poisson_ratio: found 0\.49995; .*at most 0\.4999"):
         solve(scene)
+
+
+def test_bars_whose_factors_would_not_fit_into_memory_are_solved_as_other_solids_are(cantilever, monkeypatch):
+    monkeypatch.setattr(solver, "physical_memory", lambda: 1e6)
+
+    solution = solve(cantilever((0.0, -100.0, 0.0)), 1)
+
+    assert isinstance(solution, SolidSolution)
+    assert solution.outcome == "converged"
 
 
 def test_a_refinement_below_one_is_refused(cantilever):
