@@ -159,11 +159,7 @@ def solve_condensed(scene: Scene, hexahedra: Hexahedra) -> Solved:
 
 
 def factorise(form: BilinearForm, system: System) -> Operator:
-    """The stiffness, or the condensed one, factorised on one thread."""
-    import ngsolve
-
-    # Left to think of several threads, NGSolve takes four times as long even on one.
-    ngsolve.SetNumThreads(1)
+    """The stiffness, or the condensed one, factorised."""
     return form.mat.Inverse(system.space.FreeDofs(coupling=form.condense), inverse="sparsecholesky")
 
 

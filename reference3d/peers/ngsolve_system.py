@@ -103,6 +103,8 @@ def make_system(scene: Scene, hexahedra: Hexahedra, mesh: Mesh, *, of_vectors: b
     """
     import ngsolve
 
+    # Times are compared on one thread. Not told so, NGSolve takes four times as long to factorise, even on one.
+    ngsolve.SetNumThreads(1)
     counts = Counter(order for orders in hexahedra.orders.values() for order in orders)
     most = counts.most_common(1)[0][0]
     others = _other_orders(hexahedra, mesh, most) if len(counts) > 1 else {}

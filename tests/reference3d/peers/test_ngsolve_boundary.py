@@ -23,13 +23,13 @@ def test_its_energy_of_penetration_gives_the_forces_of_the_active_set():
         answer(solve(scene, hexahedra), stations, 0.0) for solve in (solve_with_contact_boundary, solve_condensed)
     )
 
-    # the same points and polynomials; what differs is the penalty of 1e6 N/mm^3 against a rigid one: 6e-6 in force,
-    # 0.002 mm in its centre, hence 1.5e-5 in the clamp's moment
+    # the same points and polynomials; what differs is the penalty of 1e6 N/mm^3 against rigid contact: 3e-6 in force,
+    # 0.001 mm in its centre, hence 8e-6 in the clamp's moment. Other meshes showed 8e-6, 0.002 mm and 2e-5.
     assert own.outcome == condensed.outcome == "converged"
-    assert own.contact_force["overlap"] == pytest.approx(condensed.contact_force["overlap"], rel=1e-5, abs=1e-6)
-    assert own.contact_centre["overlap"] == pytest.approx(condensed.contact_centre["overlap"], abs=2e-3)
+    assert own.contact_force["overlap"] == pytest.approx(condensed.contact_force["overlap"], rel=2e-5, abs=1e-6)
+    assert own.contact_centre["overlap"] == pytest.approx(condensed.contact_centre["overlap"], abs=5e-3)
     assert own.displacement["upper"][1] == pytest.approx(condensed.displacement["upper"][1], rel=1e-5)
-    assert own.reactions["lower", 0.0] == pytest.approx(condensed.reactions["lower", 0.0], rel=3e-5, abs=1e-3)
+    assert own.reactions["lower", 0.0] == pytest.approx(condensed.reactions["lower", 0.0], rel=5e-5, abs=1e-3)
 
 
 def test_ground_is_refused():
