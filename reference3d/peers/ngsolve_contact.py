@@ -23,8 +23,8 @@ from reference3d.peers.ngsolve_system import System, face_position, gauss, isotr
 # Springs of contact, in units of the softer rod's Young's modulus over the smallest side of a section: what they let
 # through is 1e-5 of what a rod is squeezed by its own height.
 STIFF = 1e5
-# Cosine from which two faces' borders are parallel, and below which they are at right angles.
-_PARALLEL, _ACROSS = 1.0 - 1e-9, 1e-9
+# Cosine from which two faces' borders are parallel, and below which a direction has no part along an axis.
+_PARALLEL, _ACROSS = 1.0 - 1e-9, 1e-12
 _MOST_SETS = 50
 
 
@@ -91,11 +91,11 @@ def _along(system: System, rod: str, points: Array, direction: Array) -> csr_arr
 
 def _opposite(system: System, face: RodFace, position: Array, normal: Array) -> tuple[Array, Array]:
     """Points (x, y, s) of a face that lie along the normal from given positions, and how far they are as drawn, mm."""
-    rod, part = system.scene.rod(face.rod), system.rod(face.rod)
+    part = system.rod(face.rod)
     axis = face_axis(face.face)
     direction = part.frame.axes @ normal
     points = part.frame.coordinates(position)
-    distance = (face_position(rod, part.grid, face.face) - points[axis]) / direction[axis]
+    distance = (face_position(part.grid, face.face) - points[axis]) / direction[axis]
     return points + direction[:, None] * distance, distance
 
 
@@ -113,7 +113,7 @@ def _points(system: System, pair: ContactPair) -> tuple[Array, Array]:
     They lie between the borders of both faces' elements where these are parallel or at right angles; faces that cross
     askew have those of the first alone.
     """
-    rod, part = system.scene.rod(pair.first.rod), system.rod(pair.first.rod)
+    part = system.rod(pair.first.rod)
     axis = face_axis(pair.first.face)
     across = part.grid.x if axis == 1 else part.grid.y
     start, end = system.hexahedra.zones[pair.name]
@@ -134,7 +134,7 @@ def _points(system: System, pair: ContactPair) -> tuple[Array, Array]:
     (side, side_weight), (along, along_weight) = axes
     points = np.empty((3, len(side) * len(along)))
     points[1 - axis], points[2] = (of.ravel() for of in np.meshgrid(side, along))
-    points[axis] = face_position(rod, part.grid, pair.first.face)
+    points[axis] = face_position(part.grid, pair.first.face)
     return points, np.outer(along_weight, side_weight).ravel()
 
 
@@ -155,7 +155,7 @@ def _borders_seen(system: System, pair: ContactPair) -> list[tuple[int, Array]]:
     for axis, borders in ((1 - face_axis(pair.second.face), _side(second, pair.second)), (2, second.grid.s)):
         cosine = first.frame.axes[list(own)] @ second.frame.axes[axis]
         for direction in (0, 1):
-            if abs(cosine[direction]) >= _PARALLEL and abs(cosine[1 - direction]) <= _ACROSS**0.5:
+            if abs(cosine[direction]) >= _PARALLEL:
                 places = np.zeros((3, len(borders)))
                 places[axis] = borders
                 seen.append((direction, first.frame.coordinates(second.frame.place(places))[own[direction]]))

@@ -80,6 +80,8 @@ def graded(scene: Scene, fineness: Fineness, touching: Mapping[str, tuple[float,
         x, y = (_across(size, fineness.skin) for size in (section.width, section.height))
         if symmetric:
             x = np.concatenate([[0.0], x[x > 0.0]])
+            if np.dot(frame(rod).axes[0], frame(scene.rods[0]).axes[0]) < 0.0:
+                x = -x[::-1]
         grids[rod.name] = Grid(x, y, s)
     orders = {name: (fineness.order,) * grid.cells[2] for name, grid in grids.items()}
     return Hexahedra(grids, orders, symmetric, zones)

@@ -1,7 +1,7 @@
 """Hexahedra of straight rods of rectangular section, as an NGSolve mesh: one grid a rod, all rods in one mesh.
 
 A grid follows the section's coordinates (x, y) and the arc length s. Where x = 0 is a plane of symmetry of the scene,
-the half x >= 0 is meshed. Which borders a grid has is said by the caller; those that suit a scene are in
+what lies on one side of it is meshed. Which borders a grid has is said by the caller; those that suit a scene are in
 `ngsolve_grading`.
 """
 
@@ -30,7 +30,7 @@ class Grid:
 
     Attributes
     ----------
-    x, y : across the section; x begins at 0 where half a rod is meshed
+    x, y : across the section; x begins or ends at 0 where half a rod is meshed
     s : along the rod, from 0 to its length
     """
 
@@ -52,7 +52,7 @@ class Hexahedra:
     ----------
     grids : by rod
     orders : by rod, p of the polynomials in each layer of elements along s; a section between two layers has the higher
-    symmetric : whether the half x >= 0 of every rod is meshed
+    symmetric : whether half of every rod is meshed, on one side of the plane x = 0 that is all rods'
     zones : by pair, where contact is looked for, arc length along the first rod, mm
     """
 
@@ -233,7 +233,8 @@ def _boundaries(
     found: dict[str, tuple[int, IntArray]] = {}
     if hexahedra.symmetric:
         for name, part in rods.items():
-            found[f"{SYMMETRY}{materials[name]}"] = materials[name], _quadrilaterals(part, 0, 0)
+            plane = int(np.argmin(np.abs(part.grid.x)))
+            found[f"{SYMMETRY}{materials[name]}"] = materials[name], _quadrilaterals(part, 0, plane)
     for number, support in enumerate(scene.supports):
         part = rods[support.rod]
         layer = int(np.argmin(np.abs(part.grid.s - station_of(support, scene.rod(support.rod)))))

@@ -19,7 +19,7 @@ from scipy.sparse import csr_array, vstack
 from cases.scene import Clamp, Scene, SceneError, station_of
 from reference3d.peers.answer import Array, NotInstalled, PeerAnswer
 from reference3d.peers.ngsolve_contact import Springs, contact_forces, make_springs
-from reference3d.peers.ngsolve_grading import COARSE, FINE, graded
+from reference3d.peers.ngsolve_grading import COARSE, FINE, graded, is_symmetric
 from reference3d.peers.ngsolve_mesh import Hexahedra, RodMesh, frame, make_mesh, rectangle
 from reference3d.peers.ngsolve_system import (
     BilinearForm,
@@ -59,6 +59,8 @@ def solve(scene: Scene, stations: Mapping[str, Array], hexahedra: Hexahedra | No
     ------
     NotInstalled
         if NGSolve is absent.
+    ValueError
+        if half of the rods is meshed and the scene is not symmetric.
     SceneError
         if the scene has what is not given to NGSolve here: rods that are curved, twisted, not isotropic or not of
         rectangular section, joints, supports by mean displacement or askew to the global axes.
@@ -66,6 +68,8 @@ def solve(scene: Scene, stations: Mapping[str, Array], hexahedra: Hexahedra | No
     if absent := installed():
         raise NotInstalled(absent)
     require_treatable(scene)
+    if hexahedra is not None and hexahedra.symmetric and not is_symmetric(scene):
+        raise ValueError(f"a mesh of half of the rods, but scene '{scene.name}' has no plane of symmetry x = 0")
     begun = time.perf_counter()
     if hexahedra is None:
         coarse = solve_condensed(scene, graded(scene, COARSE))

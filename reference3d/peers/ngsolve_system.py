@@ -16,6 +16,7 @@ from scipy.sparse import csr_array
 
 from cases.scene import (
     Clamp,
+    Face,
     Gravity,
     LineLoad,
     Load,
@@ -252,7 +253,7 @@ def load_forces(system: System, load: Load) -> tuple[Array, Array]:
             traction = np.tile(density * np.array(load.acceleration)[:, None], len(weight))
         case Pressure():
             face = load.face.face
-            at = face_position(rod, part.grid, load.face.face)
+            at = face_position(part.grid, face)
             stretch = (load.start, load.end)
             if face_axis(face) == 1:
                 points, weight = _gauss_points(part.grid, count, y=at, s=stretch)
@@ -262,11 +263,9 @@ def load_forces(system: System, load: Load) -> tuple[Array, Array]:
     return points, traction * weight
 
 
-def face_position(rod: Rod, grid: Grid, face: str) -> float:
+def face_position(grid: Grid, face: Face) -> float:
     """Coordinate of a lateral face along the section's axis that is normal to it, mm."""
-    borders = grid.y if face in ("top", "bottom") else grid.x
-    if face == "left" and borders[0] == 0.0:
-        raise ValueError(f"the left face of rod '{rod.name}' is not in the meshed half")
+    borders = (grid.x, grid.y)[face_axis(face)]
     return float(borders[-1] if face in ("top", "right") else borders[0])
 
 
