@@ -27,6 +27,8 @@ IntArray = NDArray[np.int64]
 
 # corners that stand for less, over the largest area of one, take no part
 LEAST_AREA = 1e-6
+# points whose opposite is looked for at a time
+AT_A_TIME = 2000
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,9 +85,9 @@ def own_contact(scene: Scene, pair: ContactPair, bodies: Mapping[str, OwnBody]) 
     distance, across = np.zeros(len(station)), np.zeros_like(facets.position)
     if isinstance(pair.second, RodFace):
         other = scene.rod(pair.second.rod)
-        there = opposite(facets.position, facets.normal, other, pair.second.face)
-        inside &= there.found
-        distance = there.distance
+        for part in np.array_split(np.flatnonzero(inside), max(1, int(inside.sum()) // AT_A_TIME)):
+            there = opposite(facets.position[part], facets.normal[part], other, pair.second.face)
+            inside[part], distance[part] = there.found, there.distance
         across = facets.position + distance[:, None] * facets.normal
     area = np.where(inside, facets.area, 0.0)
     used = np.flatnonzero(area)

@@ -27,8 +27,8 @@ CUBE_FACES = ((0, 4, 7, 3), (1, 2, 6, 5), (0, 1, 5, 4), (3, 7, 6, 2), (0, 3, 2, 
 SIMPLEX = np.array([(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)], dtype=float)
 SIMPLEX_EDGES = ((0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3))
 SIMPLEX_FACES = ((0, 2, 1), (0, 1, 3), (1, 2, 3), (0, 3, 2))
-# Gauss points along an edge of a face: contact may end inside it
-FACE_POINTS = 5
+# Gauss points along an edge of a face: where contact ends inside it, they count as in or out
+FACE_POINTS = 8
 
 
 @dataclass(frozen=True, eq=False)
