@@ -209,7 +209,7 @@ def _circle(section: Circle, refinement: int) -> list[Array]:
         + (1.0 - u) * v * corner[1, 0]
         + u * v * corner[1, 1]
     )
-    share = np.linspace(0.0, 1.0, 2 * refinement + 1)[None, :, None]
+    share = line_nodes(denser_at_one(np.linspace(0.0, 1.0, refinement + 1)))[None, :, None]
     outer = (1.0 - share) * side[:, None] + share * (radius * _arc(angle))[:, None]
     return [sides - corners, *(outer @ _turn(quarter) for quarter in range(4))]
 
@@ -240,7 +240,7 @@ def _ring(section: Ring, refinement: int) -> Array:
     wall = outer - inner
     around = max(RING_BLOCKS, 2 * math.ceil(np.pi * 0.5 * (outer + inner) / (MOST_SLENDER * wall)))
     through = 2 if wall > 0.5 * outer else 1
-    radius = np.linspace(inner, outer, 2 * through * refinement + 1)
+    radius = 0.5 * (inner + outer) + line_nodes(_across(wall, through * refinement))
     angle = np.linspace(0.0, 2.0 * np.pi, 2 * around * refinement + 1)
     return np.asarray(radius[None, :, None] * _arc(angle)[:, None])
 

@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterator
 import numpy as np
 from scipy.optimize import brentq
 
-from cases.scene import Box, Material, Orthotropic, Polygon, Rectangle, Rod, RodFace, Scene
+from cases.scene import Box, Circle, Material, Orthotropic, Polygon, Rectangle, Ring, Rod, RodFace, Scene
 from reference3d.grading import GRADING_EXPONENT
 
 # Poisson's ratio for the singularity at a clamp of what is not isotropic
@@ -25,11 +25,12 @@ def formal_order(scene: Scene) -> float:
     (G. Strang, G. J. Fix, An Analysis of the Finite Element Method, 1973, chapter 8), and as h^(2 q lambda) on those
     graded towards it with exponent q, up to what the elements reach. Singular are the edges of clamps, the ends of a
     rod that presses on another, and re-entrant corners of a section of interior angle omega in torsion and shear,
-    where lambda is pi / omega. Meshes are graded towards all faces of a rectangle; those of other sections are not.
+    where lambda is pi / omega. Meshes of rectangles, circles and rings are graded towards their faces; those of boxes
+    and polygons are not.
     """
     orders = [SMOOTH_ORDER]
     for rod in scene.rods:
-        across = GRADING_EXPONENT if isinstance(rod.section, Rectangle) else 1.0
+        across = GRADING_EXPONENT if isinstance(rod.section, Rectangle | Circle | Ring) else 1.0
         orders.append(2.0 * across * clamp_singularity_exponent(_poisson_ratio(rod)))
         orders.append(2.0 * math.pi / max(0.5 * math.pi, _widest_corner(rod)))
     for one, other in _touching(scene):

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from cases.scene import Box, Circle, Material
+from cases.scene import Box, Circle, Material, Polygon, Rectangle, Ring
 from reference3d.singularities import clamp_singularity_exponent, contact_corner_exponent, formal_order
 
 
@@ -21,6 +21,7 @@ def resultant(a, b, exponent, z):
     return phi + z * np.conj(slope) + np.conj(psi)
 
 
+HEXAGON = Polygon(tuple((5.0 * np.cos(turn), 5.0 * np.sin(turn)) for turn in np.arange(6) * np.pi / 3.0))
 POTENTIALS = ((1.0, 0.0), (1j, 0.0), (0.0, 1.0), (0.0, 1j))
 
 
@@ -70,12 +71,15 @@ def test_a_rigid_corner_is_a_punch_and_a_rigid_face_takes_the_singularity_away()
     assert contact_corner_exponent(1.0) == pytest.approx(0.774, abs=5e-4)
 
 
-def test_grading_restores_the_order_that_the_clamp_takes(cantilever):
-    assert formal_order(cantilever((0.0, 1.0, 0.0))) == pytest.approx(4.0 * clamp_singularity_exponent(0.3))
+@pytest.mark.parametrize("section", [Rectangle(15.0, 15.0), Circle(10.0), Ring(10.0, 7.0)])
+def test_grading_restores_the_order_that_the_clamp_takes(cantilever, section):
+    assert formal_order(cantilever((0.0, 1.0, 0.0), section=section)) == pytest.approx(
+        4.0 * clamp_singularity_exponent(0.3)
+    )
     assert formal_order(cantilever((0.0, 1.0, 0.0), poisson_ratio=0.0)) == 4.0
 
 
-@pytest.mark.parametrize(("section", "order"), [(Circle(10.0), 2.0), (Box(10.0, 10.0, 2.0), 4.0 / 3.0)])
+@pytest.mark.parametrize(("section", "order"), [(HEXAGON, 2.0), (Box(10.0, 10.0, 2.0), 4.0 / 3.0)])
 def test_meshes_of_other_sections_are_not_graded_towards_their_faces_and_corners(cantilever, section, order):
     scene = cantilever((0.0, 1.0, 0.0), section=section, poisson_ratio=0.0)
 
