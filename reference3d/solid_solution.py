@@ -54,9 +54,9 @@ class SolidRod:
 
     @cached_property
     def centre(self) -> Array:
-        """Weights of the section's nodes for the displacement at x = y = 0, shape (n_nodes,).
+        """Weights of the section's nodes for the displacement of the centre line, shape (n_nodes,).
 
-        Where there is no material there, it is the mean displacement of the section.
+        That is the displacement at x = y = 0; where there is no material there, the mean of the section, int u dA / A.
         """
         section = self.body.section
         element, local, share = located(section, np.zeros((1, 2)))
@@ -156,7 +156,7 @@ class SolidSolution:
     def displacement(self, rod: str, station: Array) -> Array:
         """Displacement of the centre line at arc lengths `station`, global, mm, shape (3, n).
 
-        Of sections without material at their centroid it is the mean over the section.
+        Of sections without material at their centroid it is the mean over the section, int u dA / A.
         """
         found = self.rods[rod]
         layer, zeta = locate(found.body.borders, np.asarray(station, dtype=np.float64))

@@ -384,6 +384,16 @@ def test_hollow_sections_answer_with_their_mean_displacement():
     np.testing.assert_allclose(solution.displacement("rod", np.array([70.0]))[:, 0], [0.1, 0.2, 0.3], rtol=1e-9)
 
 
+@pytest.mark.parametrize("section", [Ring(10.0, 8.0), Box(10.0, 12.0, 2.0)], ids=lambda s: type(s).__name__)
+def test_the_deflection_of_a_hollow_section_is_the_mean_on_which_an_even_force_works(section):
+    load = SectionForce("rod", 60.0, (0.0, -100.0, 0.0))
+
+    solution = solve(one_rod(ALONG_X, section, (load,)), 1)
+
+    deflection = solution.displacement("rod", np.array([60.0]))[1, 0]
+    assert deflection == pytest.approx(-2.0 * solution.strain_energy / 100.0, rel=1e-8)
+
+
 def test_there_are_reactions_where_something_holds_alone():
     solution = solve(one_rod(RING, SQUARE, ()), 1)
 
