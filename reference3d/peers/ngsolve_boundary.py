@@ -73,9 +73,9 @@ def solve_with_contact_boundary(scene: Scene, hexahedra: Hexahedra) -> Solved:
         if energy <= _TOLERANCE * first:
             outcome = "converged"
             break
-    del contacts  # NGSolve wants them until here
     form.Apply(displacement, residual)
     residual.data -= load
+    del contacts  # NGSolve wants them until here
     springs = {}
     for pair in scene.contacts:
         of_pair = make_springs(system, pair)

@@ -79,6 +79,8 @@ class System:
         """Values of the scalar basis at points (x, y, s) of a rod, shape (n, number of scalar basis functions)."""
         from ngsolve import VOL, ElementId
 
+        if points.shape[1] == 0:
+            return csr_array((0, self.component.ndof))
         numbers, places = self.rod(rod).locate(points)
         columns, values, counts = [], [], []
         of_element: dict[int, tuple[Any, list[int]]] = {}
