@@ -44,6 +44,8 @@ from rodmodel.pairing import (
 )
 from rodmodel.section import Fields, section_values
 
+# Springs of multipliers are at least this part as stiff in a short interval as in the longest.
+SHORT = 0.3
 # By how much the penalty that suits the rods is stiffer than their sections, squeezed across.
 STIFFER = 1e3
 # Rods count as moved from this part of what the farthest moves on.
@@ -187,10 +189,12 @@ def initial_gap(scene: Scene, pair: ContactPair, grid: ContactGrid) -> Array:
 
 def _springs(scene: Scene, pair: ContactPair, grid: ContactGrid, multipliers: bool) -> Array:
     """c_n w of the contact points, N/mm, shape (n_points,)."""
-    weight = grid.weight
+    weight = grid.weight.copy()
     if multipliers and not pair.on_bed:
-        # What multipliers find does not depend on the springs, and alike ones leave the least at singular corners.
-        weight = np.where(weight > NO_SHARE * weight.max(), weight.max(), weight)
+        # What multipliers find does not depend on the springs; those of short intervals may as well be as stiff. Within
+        # an interval they follow the points' shares, or a constant pressure would not be one (contact patch test).
+        largest = weight.max(axis=(1, 2), keepdims=True)
+        weight *= np.maximum(1.0, SHORT * largest.max() / np.maximum(largest, NO_SHARE * largest.max()))
     # Where what the faces share ends in a corner, points have no share; they must not be without a spring.
     return np.asarray(np.maximum(weight, NO_SHARE * weight.max()).ravel() * _stiffness(scene, pair, multipliers))
 

@@ -37,7 +37,7 @@ QUICK: dict[str, tuple[float, ...]] = {
     "Element lengths": (10.0, 1e4),
     "Penalty": (10.0, 1e6),
     "Stiffness ratio": (1e-4, 0.1, 1e4),
-    "Gap": (-20.0, 0.5, 10.0, 12.0),
+    "Gap": (-14.0, 0.5, 10.0, 12.0),
     "Load reversals": (0.2, 1.0, 0.6, 0.2, -1.0, 0.2, 1.0),
     "Border search": (214.0, 238.0, 286.0),
     "Edge inside an element": (0.0, 1.0, 4.0, 17.0),

@@ -31,8 +31,8 @@ def test_stretches_take_their_moved_ends() -> None:
 
 
 def test_ripples_inside_an_element_are_not_stretches() -> None:
-    scene = load_case("two-cantilevers-e20-g05").scene
-    meshes = {rod.name: natural_mesh(scene, rod, 2, 4) for rod in scene.rods}
+    scene = load_case("two-cantilevers-e50-g0").scene
+    meshes = {rod.name: natural_mesh(scene, rod, 3, 4) for rod in scene.rods}
     system = contact_system(scene, scene_mirrors(scene), meshes, ElementStore())
     forces = unilateral_contact(system.problem)
     closed = (forces.force.reshape(system.grids["overlap"].weight.shape)[:, :, 0] > 0.0).ravel()
@@ -42,11 +42,11 @@ def test_ripples_inside_an_element_are_not_stretches() -> None:
 
 
 def test_the_lowest_level_shows_where_contact_ends() -> None:
-    """Within a contact point's distance of 4 mm, by how the gap opens beyond; h5 on moved borders says 221.44 mm."""
+    """Within a contact point's distance of 4 mm, by how the gap opens beyond; h5 on moved borders says 221.68 mm."""
     scene = load_case("two-cantilevers-e50-g0").scene
     meshes = {rod.name: natural_mesh(scene, rod, 1, 6) for rod in scene.rods}
     system = contact_system(scene, scene_mirrors(scene), meshes, ElementStore())
     (stretch,) = stretches_in_contact(system, unilateral_contact(system.problem, settled=False))
     assert stretch.start == 200.0
-    assert stretch.end == pytest.approx(221.44, abs=1.2)
-    assert abs(stretch.end - 221.44) < stretch.slack
+    assert stretch.end == pytest.approx(221.68, abs=1.2)
+    assert abs(stretch.end - 221.68) < stretch.slack
