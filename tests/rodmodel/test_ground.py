@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -51,9 +52,12 @@ def test_a_long_beam_lifts_off_a_bed_that_cannot_pull_where_the_closed_form_says
     assert -sinking == pytest.approx(100.0 * beta / (2.0 * modulus * SIDE) * share, rel=3e-3)
 
 
-def test_where_the_bed_need_not_pull_it_is_a_winkler_bed() -> None:
+@pytest.mark.parametrize("borders", [np.linspace(0.0, 80.0, 9), (0.0, 1.0, 3.0, 30.0, 31.0, 60.0, 79.0, 80.0)])
+def test_where_the_bed_need_not_pull_it_is_a_winkler_bed(borders: Sequence[float]) -> None:
+    """On short elements too, whose springs are as soft as the bed says."""
     load = rm.LineLoad("bar", 0.0, 80.0, (0.0, -2.0, 0.0))
     lying = on_ground(80.0, rm.Ground(30.0), (load,))
+    lying = replace(lying, rods=(replace(lying.rods[0], element_borders=tuple(borders)),))
     held = rm.Support("bar", 40.0, ("x", "s", "turn y"), "mean")
     bed = rm.Bed(rm.RodFace("bar", "bottom"), 0.0, 80.0, 30.0)
 
