@@ -82,7 +82,10 @@ DEFINITIONS: Mapping[str, Definition] = {
     "pressure_mean": Definition("Pressure, mean", "MPa", "Contact pressure averaged over the width."),
     "pressure_outer": Definition("Pressure, outer", "MPa", "Contact pressure at the outer border of the width."),
     "deflection": Definition(
-        "Deflection", "mm", "Displacement of the centre line (x = y = 0) at the stations, global axes."
+        "Deflection",
+        "mm",
+        "Displacement of the centre line (x = y = 0) at the stations, global axes; where a section has no material "
+        "there, the mean displacement of the section.",
     ),
     "bending_moment": Definition(
         "Bending moment",

@@ -126,7 +126,9 @@ class Solution(Protocol):
         ...
 
     def displacement(self, rod: str, station: Array) -> Array:
-        """Displacement of the centre line (x = y = 0), global components, mm, shape (3, n).
+        """Displacement of the centre line, global components, mm, shape (3, n).
+
+        That of the point x = y = 0; of a section without material there, the mean of the section, int u dA / A.
 
         station : arc length from the rod's start, mm, shape (n,)
         """

@@ -57,6 +57,17 @@ def extents(section: Section) -> tuple[float, float, float, float]:
     return -x_max, x_max, -y_max, y_max
 
 
+def has_centre(section: Section) -> bool:
+    """Whether the section has material at its centroid; a point on an edge is in the material or not."""
+    if not isinstance(section, Polygon):
+        return isinstance(section, Rectangle | Circle)
+    (x1, y1), (x2, y2) = (corners.T for corners in _edges(section))
+    crossed = (y1 > 0.0) != (y2 > 0.0)
+    # How many edges the half line y = 0, x > 0 crosses.
+    beyond = x1[crossed] * y2[crossed] - x2[crossed] * y1[crossed]
+    return bool(np.count_nonzero(beyond / (y2 - y1)[crossed] > 0.0) % 2)
+
+
 @lru_cache(maxsize=32)
 def mirror_planes(section: Section) -> tuple[bool, bool]:
     """Whether the section is its own mirror image in x = 0 and in y = 0.

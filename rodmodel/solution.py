@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import partial
 
@@ -30,6 +30,7 @@ from rodmodel.section import (
     section_values,
     strain_operators,
 )
+from rodmodel.shape import has_centre, section_quadrature
 from rodmodel.stretches import Stretch
 from rodmodel.system import ContactSystem, RodState
 
@@ -120,18 +121,40 @@ class Solution:
         return centre_points(line, station), frames(line, station)
 
     def displacement(self, rod: str, station: Array) -> Array:
-        """Displacement of the centre line, global components, mm, shape (3, n); station in mm along the rod."""
+        """Displacement of the centre line, global components, mm, shape (3, n); station in mm along the rod.
+
+        That of the point x = y = 0; where a section has no material there, the mean of the section, int u dA / A.
+        """
         station = np.atleast_1d(np.asarray(station, dtype=float))
-        return self.displacement_at(rod, np.array([np.zeros_like(station), np.zeros_like(station), station]))
+        section = self.system.rods[rod].rod.section
+        if has_centre(section):
+            return self.displacement_at(rod, np.array([np.zeros_like(station), np.zeros_like(station), station]))
+
+        def mean(fields: Fields, members: IntArray) -> Array:
+            x, y, weight = section_quadrature(section, fields.level)
+            value = section_values(section, fields, x, y) @ weight / weight.sum()
+            return np.repeat(value[:, None], len(members), axis=1)
+
+        return self._displacement(rod, station, mean)
 
     def displacement_at(self, rod: str, points: Array) -> Array:
         """Displacement at points (x, y, s) of a rod, global components, mm; shape (3, n) to (3, n)."""
+        section = self.system.rods[rod].rod.section
+        return self._displacement(
+            rod, points[2], lambda fields, members: section_values(section, fields, *points[:2, members])
+        )
+
+    def _displacement(self, rod: str, station: Array, values: Callable[[Fields, IntArray], Array]) -> Array:
+        """Sums of all fields' values over the section times psi, global components, shape (3, n).
+
+        values : of every field at chosen stations, shape (n_fields, n_chosen)
+        """
         assembled = self.system.rods[rod]
-        local = np.empty((3, points.shape[1]))
-        for fields, members, psi, _ in self._axial(assembled, points[2]):
-            values = section_values(assembled.rod.section, fields, points[0, members], points[1, members]) * psi
-            local[:, members] = [values[fields.indices(component)].sum(axis=0) for component in (U, V, W)]
-        axes = frames(assembled.rod.centre_line, np.asarray(points[2], dtype=float))
+        local = np.empty((3, len(station)))
+        for fields, members, psi, _ in self._axial(assembled, station):
+            moved = values(fields, members) * psi
+            local[:, members] = [moved[fields.indices(component)].sum(axis=0) for component in (U, V, W)]
+        axes = frames(assembled.rod.centre_line, np.asarray(station, dtype=float))
         return np.asarray(np.einsum("ncg,cn->gn", axes, local))
 
     def strain(self, rod: str, points: Array) -> Array:

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from scipy.special import gamma
 
 from cases.scene import Box, Circle, Polygon, Rectangle, Ring, Section
-from rodmodel.shape import extents, mirror_planes, outline, section_quadrature
+from rodmodel.shape import extents, has_centre, mirror_planes, outline, section_quadrature
 
 DEGREE = 9
 
@@ -216,3 +216,17 @@ def test_corners_that_are_level_but_for_round_off_do_no_harm() -> None:
     _, y, weight = section_quadrature(skewed, 2)
     assert np.sum(weight) == pytest.approx(50.0, rel=1e-12)
     assert weight @ y**2 == pytest.approx(10.0 * 5.0**3 / 12.0, rel=1e-12)
+
+
+@pytest.mark.parametrize("name", SECTIONS)
+def test_hollow_sections_have_no_material_at_their_centroid(name: str) -> None:
+    """That of the L lies at (2.7, 6.0) from its corner, just within the leg, which is 3 wide."""
+    assert has_centre(SECTIONS[name]) == (name not in ("box", "ring", "thin ring"))
+
+
+def test_the_centroid_of_a_channel_lies_beside_its_web() -> None:
+    channel = ((0.0, 0.0), (12.0, 0.0), (12.0, 2.0), (2.0, 2.0), (2.0, 18.0), (12.0, 18.0), (12.0, 20.0), (0.0, 20.0))
+
+    assert not has_centre(Polygon(channel))
+    assert has_centre(Polygon(((0.0, 0.0), (12.0, 0.0), (12.0, 20.0), (0.0, 20.0))))
+    assert not has_centre(Polygon((*channel[:2], (12.0, 20.0), (0.0, 20.0)), (((4, 8), (8, 8), (8, 12), (4, 12)),)))

@@ -73,6 +73,20 @@ def test_energy_is_half_the_work_of_the_load(cantilever: Callable[..., rm.Scene]
     assert solution.strain_energy == pytest.approx(-0.5 * 1000.0 * end, rel=1e-6)
 
 
+@pytest.mark.parametrize("section", [rm.Ring(20.0, 16.0), rm.Box(20.0, 15.0, 2.0)])
+def test_the_deflection_of_a_hollow_section_is_its_mean(
+    cantilever: Callable[..., rm.Scene], section: rm.Ring | rm.Box
+) -> None:
+    """The mean is what an evenly spread force works on: the energy is half of force times it."""
+    scene = cantilever((300.0, -1000.0, 200.0), length=60.0)
+    hollow = replace(scene, rods=(replace(scene.rods[0], section=section),))
+
+    solution = rm.solve(hollow, level=4, order=5)
+
+    end = solution.displacement("bar", np.array([60.0]))[:, 0]
+    assert solution.strain_energy == pytest.approx(0.5 * np.array([300.0, -1000.0, 200.0]) @ end, rel=1e-10)
+
+
 def test_bending_stress_on_the_surface(cantilever: Callable[..., rm.Scene]) -> None:
     solution = rm.solve(graded(cantilever((0.0, -1000.0, 0.0), elements=6)), level=3, order=6)
     stress = solution.stress("bar", np.array([[0.0], [7.5], [175.0]]))[:, 0]
