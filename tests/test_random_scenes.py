@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 import rodmodel
-from cases.scene import Ground, SceneError
+from cases.scene import Box, Ground, Material, Rectangle, Rod, SceneError
 from reports.quantities import evaluate
 from tests.random_scenes import random_scene
 
@@ -22,6 +22,16 @@ SCENES = int(os.environ.get("RANDOM_SCENES", "24"))
 PENETRATION = 2e-3
 # Unbalanced force, as a share of the largest.
 UNBALANCED = 1e-8
+
+# What round-off may leave of forces that cancel in a rigid motion: some hundred times the precision of numbers.
+ROUND_OFF = 1e-13
+
+
+def axial_stiffness(rod: Rod) -> float:
+    """E A / L, N/mm, of the full outline: more than the section's own."""
+    assert isinstance(rod.section, Rectangle | Box)
+    assert isinstance(rod.material, Material)
+    return rod.material.young_modulus * rod.section.width * rod.section.height / rod.length
 
 
 def checked_outcome(seed: int) -> str:
@@ -46,9 +56,11 @@ def checked_outcome(seed: int) -> str:
         if not isinstance(pair.second, Ground) or pair.second.modulus is None:
             assert points.gap.min(initial=0.0) >= -PENETRATION * moved - 1e-6, (seed, pair.name)
     quantities = evaluate(solution)
-    # The residual is relative to loads and reactions; forces of an interference fit may be much larger.
+    # Forces that cancel are large where a stiff rod is carried far by a soft one: some bend by metres under these loads.
     reactions = max((float(np.abs(each[:3]).max()) for each in quantities.reactions.values()), default=0.0)
-    assert quantities.equilibrium_residual <= UNBALANCED * max(1.0, largest / max(reactions, 1e-12)), seed
+    cancelling = max(axial_stiffness(rod) * moved for rod in scene.rods)
+    allowed = UNBALANCED + ROUND_OFF * cancelling / max(reactions, largest, 1e-12)
+    assert quantities.equilibrium_residual <= allowed, seed
     return "converged, edges settled" if solution.edge_uncertainty <= 0.02 else "converged, edges on a fixed mesh"
 
 
