@@ -15,11 +15,11 @@ from inspect import getsource
 from pathlib import Path
 
 from cases.case import Case, Grades
-from cases.scene import SceneError
+from cases.scene import Scene, SceneError
 from reports.cache import Cache
 from reports.case_comparison import case_comparisons, comparisons_without_reference, evaluation_points
 from reports.code_version import code_version
-from reports.comparison import Comparison, Extrapolation
+from reports.comparison import Comparison, Extrapolate, Extrapolation
 from reports.memory import peak_memory
 from reports.peers import PeerRun, SideBySide, ask_peers, side_by_side, stations_of
 from reports.processes import ProcessFailed, Progress, failure_reason, in_own_process
@@ -82,6 +82,7 @@ class CaseRun:
     side_by_side : numbers that solvers not written here can tell, too
     peers : what came of asking those solvers; none where they are not asked
     notes : what the user should know of the cache, a sentence each
+    sizes : representative element sizes of the 3D reference's meshes, mm
     """
 
     case: Case
@@ -92,6 +93,7 @@ class CaseRun:
     side_by_side: tuple[SideBySide, ...] = ()
     peers: tuple[PeerRun, ...] = ()
     notes: tuple[str, ...] = ()
+    sizes: tuple[float, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -178,8 +180,6 @@ def run_case(case: Case, progress: Progress, cache: Cache | None = None) -> Case
     SceneError
         if the rod model cannot treat the scene.
     """
-    import reference3d
-
     rod = _kept_rod(case, cache)
     if rod is None:
         progress("rod model")
@@ -199,17 +199,26 @@ def run_case(case: Case, progress: Progress, cache: Cache | None = None) -> Case
             cache.keep("reference", _reference_question(case), references)
 
     progress("comparison")
-    coarse, medium, fine = references.sizes
-    order = reference3d.formal_order(case.scene)
+    extrapolate = extrapolation(case.scene, references.sizes)
+    quantities = [run.quantities for run in references.runs]
+    comparisons = case_comparisons(case, rod.quantities, quantities, extrapolate)
+    beside = side_by_side(case, rod.quantities, quantities, extrapolate)
+    notes, sizes = _notes(cache), references.sizes
+    return CaseRun(case, rod, references.runs, comparisons, side_by_side=beside, notes=notes, sizes=sizes)
+
+
+def extrapolation(scene: Scene, sizes: tuple[float, ...]) -> Extrapolate:
+    """What three numbers say of a scene, those of the 3D reference on meshes of these element sizes, coarse to fine."""
+    import reference3d
+
+    coarse, medium, fine = sizes
+    order = reference3d.formal_order(scene)
 
     def extrapolate(first: float, second: float, third: float) -> Extrapolation:
         found = reference3d.grid_convergence((first, second, third), (coarse, medium, fine), order)
         return Extrapolation(found.extrapolated, found.uncertainty, found.observed_order if found.asymptotic else None)
 
-    quantities = [run.quantities for run in references.runs]
-    comparisons = case_comparisons(case, rod.quantities, quantities, extrapolate)
-    beside = side_by_side(case, rod.quantities, quantities, extrapolate)
-    return CaseRun(case, rod, references.runs, comparisons, side_by_side=beside, notes=_notes(cache))
+    return extrapolate
 
 
 def _run_references(case: Case, progress: Progress) -> ReferenceRuns:
