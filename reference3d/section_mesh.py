@@ -407,5 +407,6 @@ def located(mesh: SectionMesh, place: Array) -> tuple[IntArray, Array, Array]:
     # where the search found no place in an element, the point is far from it
     missing = np.linalg.norm(target - np.einsum("an,nac->nc", shapes(*local.T)[0], nodes), axis=1)
     beyond = (np.abs(local).max(axis=1) + missing / (SAME * reach[element.ravel()])).reshape(len(place), candidates)
-    holds = beyond <= np.maximum(1.0 + 1e-8, beyond.min(axis=1, keepdims=True))
+    # round-off of what is missing, some 1e-15 of the reach, counts up to 1e-6 here
+    holds = beyond <= np.maximum(1.0 + 1e-5, beyond.min(axis=1, keepdims=True))
     return element, local.reshape(len(place), candidates, 2), holds / holds.sum(axis=1, keepdims=True)

@@ -258,7 +258,7 @@ def deck(
 
 @app.command
 def verify(*, output: Path = Path("report")) -> int:
-    """Hold the rod model against closed forms, published benchmarks and 3D; print and write what came of it.
+    """Hold both models against closed forms and published benchmarks; print and write what came of it.
 
     Parameters
     ----------

@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 import plotly.graph_objects as go
 
+from cases.case import Quantity
 from cases.scene import ContactPair
 from reports.comparison import Comparison
 from reports.figures import deflection_figure, moment_figure, pressure_figure
@@ -55,7 +56,7 @@ MOMENT_CAPTION = (
 PAGES = {
     "verification.html": (
         "Verification",
-        "the rod model against closed forms, published benchmarks and 3D, level by level.",
+        "both models against closed forms and published benchmarks, and the rod model against 3D, level by level.",
     ),
     "performance.html": (
         "Performance",
@@ -238,19 +239,40 @@ def _solvers(run: CaseRun) -> list[tuple[str, Run]]:
 
 
 def _headline(run: CaseRun) -> list[list[str]]:
-    """Cells of the table of all cases: a line for the rod model and, if there is one, one for 3D."""
+    """Cells of the table of all cases: a line for the rod model and, if there is one, one for 3D.
+
+    What the case compares has its uncertainty beside the value of the finest 3D mesh.
+    """
     answers = (run.rod, *run.references[-1:])
 
-    def largest(answer: Run) -> float:
-        return max(float(np.linalg.norm(found.displacement, axis=0).max()) for found in answer.quantities.rods)
+    def largest(answer: Run) -> str:
+        farthest = {
+            found.rod: float(np.linalg.norm(found.displacement, axis=0).max()) for found in answer.quantities.rods
+        }
+        rod = max(farthest, key=lambda name: farthest[name])
+        return number(farthest[rod], 5) + sure(answer, "deflection", rod)
+
+    def sure(answer: Run, quantity: Quantity, of: str) -> str:
+        known = [
+            found.uncertainty
+            for found in run.comparisons
+            if (found.kind, found.quantity, found.of) == ("reference", quantity, of) and found.uncertainty is not None
+        ]
+        return f" ± {measure(quantity, known[0])}" if known and answer.model == "reference" else ""
 
     return [
-        [", ".join(number(contact.force, 5) for contact in answer.quantities.contacts) for answer in answers],
+        [
+            ", ".join(
+                number(contact.force, 5) + sure(answer, "contact_force", contact.pair)
+                for contact in answer.quantities.contacts
+            )
+            for answer in answers
+        ],
         [
             "; ".join(stretches(np.ravel(contact.edges).tolist()) for contact in answer.quantities.contacts)
             for answer in answers
         ],
-        [number(largest(answer), 5) for answer in answers],
+        [largest(answer) for answer in answers],
         [f"{answer.quantities.unknowns:,}".replace(",", " ") for answer in answers],
         [seconds(answer.total_seconds) for answer in answers],
     ]

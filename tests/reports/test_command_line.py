@@ -50,8 +50,6 @@ def solved(monkeypatch: pytest.MonkeyPatch):
         ["compare"],
         ["solve", CASE, "--mesh", "bars.msh"],
         ["solve", CASE, "--model", "reference", "--mesh", "no such file.msh"],
-        ["solve", CASE, "--mesh", "bars.msh"],
-        ["solve", CASE, "--model", "reference", "--mesh", "no such file.msh"],
         ["solve", CASE, "--vtu", "fields.vtk"],
         ["solve", CASE, "--vtu", f"{__file__}/below/a/file.vtu"],
         ["compare", CASE, CASE],
