@@ -6,6 +6,7 @@ Block Cholesky (Golub and Van Loan, Matrix Computations, section 4.5.1). The cos
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from copy import copy
 from itertools import pairwise
 
 import numpy as np
@@ -51,6 +52,7 @@ class Chain:
     nodes : those that carry anything, in the order of elimination
     factors, links : diagonal blocks of the factor, and what couples each with the one before (None where nothing
         does), for unit modulus
+    root : square root of E
 
     Raises
     ------
@@ -74,7 +76,7 @@ class Chain:
         past = np.cumsum(counts)
         self.rows = [slice(int(end - count), int(end)) for end, count in zip(past, counts, strict=True)]
         self.size = int(past[-1])
-        self._root = np.sqrt(young_modulus)
+        self.root = np.sqrt(young_modulus)
 
         backward = fields[-1].count - counts[-1] > fields[0].count - counts[0]
         order = range(len(elements), -1, -1) if backward else range(len(elements) + 1)
@@ -112,6 +114,12 @@ class Chain:
         block = element.condensed[row_side * count :, column_side * count :][:count, :count]
         return restricted(restricted(block, rows).T, columns).T
 
+    def with_modulus(self, young_modulus: float) -> Chain:
+        """The same chain of a rod with another modulus (MPa): everything kept is for unit modulus."""
+        chain = copy(self)
+        chain.root = np.sqrt(young_modulus)
+        return chain
+
     def half_solve(self, loads: Array) -> Array:
         """L^-1 loads with K = L L^T, whose inner products are compliances; on what is carried, shape (size, m)."""
         result = np.zeros_like(loads)
@@ -124,7 +132,7 @@ class Chain:
                 before = None
                 continue
             before = lower_solve(factor, load)
-            np.divide(before, self._root, out=result[self.rows[node]])
+            np.divide(before, self.root, out=result[self.rows[node]])
         return result
 
     def back_solve(self, half: Array) -> Array:
@@ -137,7 +145,7 @@ class Chain:
             if link is not None:
                 load = load - link.T @ result[self.rows[self.nodes[index + 1]]]
             result[rows] = transposed_solve(self.factors[index], load)
-        return np.asarray(result / self._root)
+        return np.asarray(result / self.root)
 
 
 def _carried(fields: Sequence[Fields], node: int, element: Element, free: Mapping[int, Free]) -> Free:

@@ -45,12 +45,16 @@ class EdgeSearch:
     positions : last position of every edge, mm along its pair's first rod, shape (n_edges,)
     steps : every position tried, shape (n_solutions, n_edges)
     system : with the borders at the last position
+    root : where the step from the last position, which was not tried any more, leads, mm, shape (n_edges,)
+    jacobian : derivatives of what the search drives to zero, as known in the end, shape (n_edges, n_edges)
     """
 
     outcome: str
     positions: Array
     steps: Array
     system: ContactSystem
+    root: Array
+    jacobian: Array
 
 
 def find_edges(
@@ -59,6 +63,7 @@ def find_edges(
     edges: Sequence[Edge],
     positions: Array,
     system_at: Callable[[Array], tuple[ContactSystem, Mapping[str, Rates]]],
+    jacobian: Array | None = None,
 ) -> EdgeSearch:
     """Roots of the edge pressures in the edge positions, all at once, by Newton's method.
 
@@ -70,12 +75,12 @@ def find_edges(
     ----------
     positions : first guess, mm, shape (n_edges,)
     system_at : makes the contact system with the borders at given positions, and tells how these follow the edges
+    jacobian : derivatives by the positions from the search in a scene nearly the same; the first step takes them
     """
     outward = np.array([edge.outward for edge in edges])
     bracket = Bracket()
     tried: list[Array] = []
     values: list[Array] = []
-    jacobian: Array | None = None
     new = _not_too_short(scene, stretches, edges, positions)
     while True:
         positions, current = new, moved(stretches, edges, new)
@@ -84,7 +89,7 @@ def find_edges(
         tried.append(positions)
         values.append(pressures.value * _lengths(current, edges) ** POWER)
         bracket = bracket.tightened(outward[0] * positions[0], values[-1][0])
-        if jacobian is not None:
+        if jacobian is not None and len(tried) > 1:
             change, before = outward * (positions - tried[-2]), values[-2]
             # A short step that does what it should leaves slopes that need no more than Broyden's correction.
             short = (np.abs(change) < SHORT_STEP * _lengths(current, edges)).all()
@@ -104,7 +109,7 @@ def find_edges(
             outcome = "stagnated"
         else:
             continue
-        return EdgeSearch(outcome, positions, np.array(tried), system)
+        return EdgeSearch(outcome, positions, np.array(tried), system, new, jacobian)
 
 
 def _step(

@@ -142,32 +142,52 @@ def contact_system(
         stays = [each.stay for each in loose if each.stay is not None and each.rods == (rod.name,)]
         rods[rod.name] = assembled_rod(scene, rod, mirrors[rod.name], meshes[rod.name], store, stays)
     grids = {pair.name: _grid(scene, pair, rods, mirrors) for pair in scene.contacts}
-    counts = [grid.weight.size for grid in grids.values()]
-    ends = np.cumsum([0, *counts])
-    points = {name: slice(ends[i], ends[i + 1]) for i, name in enumerate(grids)}
-    matrix = np.zeros((ends[-1], ends[-1]))
-    gap, spring = np.empty(ends[-1]), np.empty(ends[-1])
-    for pair in scene.contacts:
-        gap[points[pair.name]] = initial_gap(scene, pair, grids[pair.name])
+    points = _points(grids)
     joints = skeleton(scene, mirrors, rods, loose)
-    on_joints = np.zeros((0 if joints is None else len(joints.free), ends[-1] + 1))
-    found, places = {}, {}
+    found, places, responses = {}, {}, {}
     for name, assembled in rods.items():
         parts, place = _gap_parts(scene, assembled, grids, points)
         parts += load_parts(assembled, scene.loads, column=len(place))
         parts += prescribed_parts(assembled, column=len(place))
         found[name], places[name] = functionals(assembled, parts, count=len(place) + 1), place
-        response = compliance(found[name])
+        responses[name] = compliance(found[name])
+    return joined_system(scene, rods, grids, found, places, responses, joints, multipliers)
+
+
+def joined_system(
+    scene: Scene,
+    rods: Mapping[str, AssembledRod],
+    grids: Mapping[str, ContactGrid],
+    found: Mapping[str, Functionals],
+    places: Mapping[str, IntArray],
+    responses: Mapping[str, Array],
+    joints: Skeleton | None,
+    multipliers: bool,
+) -> ContactSystem:
+    """The contact problem of rods that are reduced to their contact points.
+
+    found, places : `functionals` and `places` of the system
+    responses : compliance of the functionals, by rod name, shape (n_rod + 1, n_rod + 1)
+    """
+    points = _points(grids)
+    count = sum(grid.weight.size for grid in grids.values())
+    matrix = np.zeros((count, count))
+    gap, spring = np.empty(count), np.empty(count)
+    for pair in scene.contacts:
+        gap[points[pair.name]] = initial_gap(scene, pair, grids[pair.name])
+    on_joints = np.zeros((0 if joints is None else len(joints.free), count + 1))
+    for name, assembled in rods.items():
+        place, response = places[name], responses[name]
         matrix[np.ix_(place, place)] += response[:-1, :-1]
         gap[place] += response[:-1, -1] + on_given(assembled, found[name])[:-1]
         if joints is not None and name in joints.rods:
             on_joints[:, [*place, -1]] += joints.rods[name].on_joints(found[name])
-    free = np.zeros((0, ends[-1] + 1))
+    free = np.zeros((0, count + 1))
     if joints is not None:
         free, on_joints = joints.free.T @ on_joints, joints.half_solve(on_joints)
         matrix += on_joints[:, :-1].T @ on_joints[:, :-1]
         gap += on_joints[:, :-1].T @ on_joints[:, -1]
-    rigid = np.full(ends[-1], multipliers)
+    rigid = np.full(count, multipliers)
     for pair in scene.contacts:
         part = points[pair.name]
         spring[part] = _springs(scene, pair, grids[pair.name], multipliers)
@@ -177,6 +197,12 @@ def contact_system(
             rigid[part] = False
     problem = ContactProblem(matrix, gap, spring, np.ascontiguousarray(free[:, :-1].T), free[:, -1], rigid)
     return ContactSystem(scene, rods, grids, points, found, places, problem, joints, on_joints)
+
+
+def _points(grids: Mapping[str, ContactGrid]) -> dict[str, slice]:
+    """By pair name, where its contact points stand in the vector of all."""
+    ends = np.cumsum([0, *(grid.weight.size for grid in grids.values())]).tolist()
+    return {name: slice(start, end) for name, start, end in zip(grids, ends, ends[1:], strict=False)}
 
 
 def initial_gap(scene: Scene, pair: ContactPair, grid: ContactGrid) -> Array:
