@@ -1,0 +1,270 @@
+"""Seconds, unknowns and answers of every configuration of a case, in one process on one thread.
+
+The rod model's levels, orders and meshes, beams, and NGSolve on meshes that were tuned knowing the answer are run here,
+in turn, several times each; the 3D reference's meshes and the peers' own come from the run of the case.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field
+from functools import partial
+from importlib.metadata import PackageNotFoundError, version
+from typing import cast
+
+from cases.case import Case
+from cases.loader import library_names, load_case
+from reports.cache import Cache
+from reports.case_comparison import evaluation_points
+from reports.chart.beams import THEORIES, NotBeams, solve_beams
+from reports.chart.points import (
+    NGSOLVE_BOUNDARY,
+    NGSOLVE_TUNED,
+    ROD_GRADED,
+    ROD_OWN,
+    SOLID,
+    Chart,
+    Point,
+    Values,
+    beam_values,
+    own_values,
+    peer_values,
+    references_of,
+)
+from reports.code_version import code_version
+from reports.peers import Answer, stations_of
+from reports.processes import ProcessFailed, Progress, failure_reason, in_own_process
+from reports.quantities import evaluate
+from reports.runner import CaseRun, extrapolation
+from reports.solution import Array
+
+LEVELS, ORDERS = (1, 2, 3, 4, 5, 6), (3, 4, 6)
+# Points over a contact zone of beams.
+BEAM_POINTS = (6, 21, 61)
+REPEATS = 3
+# Processor seconds after which no further configuration of the rod model is begun, and none is run again.
+ENOUGH, ENOUGH_NGSOLVE = 8.0, 5.0
+
+# What a run of a configuration says: outcome, unknowns, values.
+Told = tuple[str, int, Values]
+
+
+@dataclass(frozen=True)
+class Measured:
+    """Configurations measured here, and sentences on those that were not."""
+
+    points: tuple[Point, ...]
+    notes: tuple[str, ...]
+
+
+@dataclass
+class _Timed:
+    """A configuration, and its runs so far."""
+
+    method: str
+    label: str
+    run: Callable[[], Callable[[], Told]]
+    seconds: list[float] = field(default_factory=list)
+    told: Told | None = None
+
+    def once(self) -> None:
+        """Run it; what it says is evaluated once, and never timed."""
+        begin = time.process_time()
+        tell = self.run()
+        self.seconds.append(time.process_time() - begin)
+        self.told = self.told or tell()
+
+    def point(self) -> Point:
+        """The point it is."""
+        assert self.told is not None  # it was run
+        return Point(self.method, self.label, *self.told[:2], tuple(self.seconds), "processor", self.told[2])
+
+
+def make_chart(run: CaseRun, progress: Progress = lambda _: None, cache: Cache | None = None) -> Chart:
+    """The chart of a case that was run.
+
+    Parameters
+    ----------
+    cache : where measurements are looked for and kept
+
+    Raises
+    ------
+    ValueError
+        if the 3D reference cannot treat the case, so that there is nothing to hold errors against.
+    """
+    case = run.case
+    if not run.references:
+        raise ValueError(f"there is no 3D reference to hold errors against: {run.refusal}")
+    references = references_of(
+        case.scene, [answer.quantities for answer in run.references], extrapolation(case.scene, run.sizes)
+    )
+    question = _question(run)
+    kept = None if cache is None else cache.find("chart", question, (Measured, Point))
+    notes: list[str] = []
+    if kept is not None:
+        measured: Measured = kept.value
+        notes.append(f"Seconds of the rod model, of beams and of tuned NGSolve were measured on {kept.date}.")
+    else:
+        progress("chart")
+        measured = _measured(case, stations_of(run.rod.quantities), notes)
+        # what failed once may not fail again
+        if cache is not None and not notes:
+            cache.keep("chart", question, measured)
+    points, from_run = _of_the_run(run)
+    return Chart(case.title, (*measured.points, *points), references, (*notes, *measured.notes, *from_run))
+
+
+def _question(run: CaseRun) -> tuple[object, ...]:
+    """All that the measurement of a case depends on."""
+    code = code_version("rodmodel", "reports.chart.measure", "reference3d.peers.ngsolve_tuned")
+    return code, _ngsolve_version(), run.case.name, run.case.scene, run.case.rod_model, evaluation_points(run.case)
+
+
+def _ngsolve_version() -> str:
+    try:
+        return version("ngsolve")
+    except PackageNotFoundError:
+        return ""
+
+
+def _measured(case: Case, stations: Mapping[str, Array], notes: list[str]) -> Measured:
+    """Everything measured here; what fails is told in `notes`."""
+    found = []
+    for what, work in (("rod model and beams", measure_rods), ("NGSolve", measure_ngsolve)):
+        try:
+            found.append(in_own_process(partial(work, stations=stations), case))
+        except ProcessFailed as error:
+            notes.append(f"{what}: not measured, {error}.")
+    return Measured(tuple(p for one in found for p in one.points), tuple(n for one in found for n in one.notes))
+
+
+def measure_rods(case: Case, _progress: Progress, stations: Mapping[str, Array]) -> Measured:
+    """The rod model by level, order and mesh, and beam theory."""
+    del stations
+    notes = []
+    rods = list(_rod_configurations(case))
+    # what is loaded and computed once a process belongs to none of them
+    rods[0].run()
+    left_out = _run_in_turn(rods, ENOUGH)
+    if left_out:
+        notes.append(
+            f"{len(left_out)} of {len(rods)} configurations of the rod model were left out, as the others took "
+            f"{ENOUGH:g} s: {', '.join(each.label for each in left_out)}."
+        )
+    beams: list[_Timed] = []
+    try:
+        solve_beams(case.scene, THEORIES[0], 2)
+        beams = list(_beam_configurations(case))
+        _run_in_turn(beams, ENOUGH)
+    except NotBeams as error:
+        notes.append(f"Beam theory is left out: {error}.")
+    except Exception as error:  # noqa: BLE001 (whatever is wrong with beams, the rod model is measured)
+        notes.append(f"Beam theory is left out: {failure_reason(error)}.")
+    points = [each.point() for each in (*rods, *beams) if each.told is not None]
+    return Measured(tuple(points), tuple(notes))
+
+
+def _rod_configurations(case: Case) -> Iterator[_Timed]:
+    """By level, order and mesh, low levels first, and the case's own where it is none of them."""
+    import rodmodel
+    from rodmodel.adapt import graded
+
+    points = evaluation_points(case)
+    settings = case.rod_model
+
+    def run(scene: rodmodel.Scene, level: object, order: object) -> Callable[[], Told]:
+        solution = rodmodel.solve(scene, level, order)  # type: ignore[arg-type]
+
+        def tell() -> Told:
+            quantities = evaluate(solution, points.stations, points.stress_points)
+            return quantities.outcome, quantities.unknowns, own_values(case.scene, quantities)
+
+        return tell
+
+    meshes = {ROD_OWN: case.scene, ROD_GRADED: graded(case.scene)}
+    if meshes[ROD_OWN] == meshes[ROD_GRADED]:
+        del meshes[ROD_GRADED]
+    for order in ORDERS:
+        for level in LEVELS:
+            for method, scene in meshes.items():
+                yield _Timed(method, f"h{level}, p = {order}", partial(run, scene, level, order))
+    if settings.level not in LEVELS or settings.order not in ORDERS:
+        yield _Timed(ROD_OWN, "as the case has it", partial(run, case.scene, settings.level, settings.order))
+
+
+def _beam_configurations(case: Case) -> Iterator[_Timed]:
+    def run(theory: object, count: int) -> Callable[[], Told]:
+        answer = solve_beams(case.scene, theory, count)  # type: ignore[arg-type]
+        return lambda: (answer.outcome, answer.unknowns, beam_values(answer))
+
+    for theory in THEORIES:
+        for count in BEAM_POINTS if case.scene.contacts else BEAM_POINTS[:1]:
+            label = f"{count} points over each zone" if case.scene.contacts else "elements exact at their nodes"
+            yield _Timed(f"{theory} beams", label, partial(run, theory, count))
+
+
+def measure_ngsolve(case: Case, _progress: Progress, stations: Mapping[str, Array]) -> Measured:
+    """NGSolve on its tuned meshes, with contact condensed by hand and with its own `ContactBoundary`."""
+    from reference3d.peers.ngsolve_boundary import solve_with_contact_boundary
+    from reference3d.peers.ngsolve_solver import Solved, answer, installed, solve_condensed
+    from reference3d.peers.ngsolve_tuned import TUNED
+
+    tuned = {tolerance: mesh for (name, tolerance), mesh in TUNED.items() if name == case.name}
+    if not tuned or case.name not in library_names() or load_case(case.name).scene != case.scene:
+        return Measured((), ())
+    if absent := installed():
+        return Measured((), (absent,))
+
+    def run(solve: Callable[..., Solved], tolerance: float) -> Callable[[], Told]:
+        solved = solve(case.scene, tuned[tolerance])
+
+        def tell() -> Told:
+            found = answer(solved, stations, 0.0)
+            return found.outcome, found.unknowns, peer_values(cast("Answer", found))
+
+        return tell
+
+    configurations = [
+        _Timed(method, f"mesh tuned to {tolerance:g} %", partial(run, solve, tolerance))
+        for method, solve in ((NGSOLVE_TUNED, solve_condensed), (NGSOLVE_BOUNDARY, solve_with_contact_boundary))
+        for tolerance in tuned
+    ]
+    configurations[0].run()
+    left_out = _run_in_turn(configurations, ENOUGH_NGSOLVE)
+    notes = [f"NGSolve: {each.method}, {each.label}, was left out, as it takes long." for each in left_out]
+    return Measured(tuple(each.point() for each in configurations if each.told is not None), tuple(notes))
+
+
+def _run_in_turn(configurations: list[_Timed], enough: float) -> list[_Timed]:
+    """Run all once and again, so that what disturbs the machine disturbs all of them; those there was no time for."""
+    spent = 0.0
+    for _ in range(REPEATS):
+        for each in configurations:
+            if spent < enough:
+                each.once()
+                spent += each.seconds[-1]
+    return [each for each in configurations if each.told is None]
+
+
+def _of_the_run(run: CaseRun) -> tuple[list[Point], list[str]]:
+    """The meshes of the 3D reference and what peers did on their own."""
+    points, notes = [], []
+    for number, answer in enumerate(run.references, start=1):
+        found = answer.quantities
+        seconds = found.setup_seconds + found.solve_seconds
+        label = f"mesh {number} of {len(run.references)}"
+        values = own_values(run.case.scene, found)
+        points.append(Point(SOLID, label, found.outcome, found.unknowns, (seconds,), "wall", values))
+    days = {answer.kept_since for answer in run.references if answer.kept_since}
+    notes += [f"Seconds of 3D were measured on {day}." for day in sorted(days)]
+    for peer in run.peers:
+        if peer.answer is None:
+            notes.append(f"{peer.peer} is left out: {peer.reason.rstrip('.')}.")
+            continue
+        told = peer.answer
+        values = peer_values(told)
+        points.append(Point(peer.peer, "its own mesh", told.outcome, told.unknowns, (told.seconds,), "wall", values))
+        if peer.kept_since:
+            notes.append(f"Seconds of {peer.peer} were measured on {peer.kept_since}.")
+    return points, notes
