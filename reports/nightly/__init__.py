@@ -1,0 +1,1 @@
+"""Every night: all cases through Dask, their history, and what moved since."""

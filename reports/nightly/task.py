@@ -1,0 +1,49 @@
+"""What a nightly run asks of a worker."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from cases.case import Case
+from reports.code_version import code_version
+from reports.peers import PEERS
+
+
+@dataclass(frozen=True)
+class Limits:
+    """What a case may take.
+
+    Attributes
+    ----------
+    memory : bytes, of all its processes together; None for an equal part of the machine's
+    seconds : wall-clock time
+    """
+
+    memory: float | None
+    seconds: float
+
+
+@dataclass(frozen=True)
+class Task:
+    """A case to be run.
+
+    Attributes
+    ----------
+    cache : folder of results on the worker's machine; None for none
+    peers : whether solvers that are not of this project are asked
+    at_once : cases that one machine runs at the same time
+    version : of the code that asks (`version`), which must be the code that answers
+    """
+
+    case: Case
+    cache: Path | None
+    peers: bool
+    limits: Limits
+    at_once: int
+    version: str
+
+
+def version() -> str:
+    """Fingerprint of all code that a case's answer and its comparison come from."""
+    return code_version("reports.runner", "reports.nightly.case_process", *PEERS.values())
