@@ -29,6 +29,8 @@ STIFFENED, MOST_STIFFENED = 10.0, 4
 # How often points that are wrong about a set may change sides; how often in a row all of them may where that leaves no
 # fewer, and what part of them does then.
 MOST_EXCHANGES, PATIENCE, FEWER = 60, 3, 3
+# Stiffness of the points against a motion, of the largest, below which they do not hold it.
+NO_STIFFNESS = 1e-15
 # How far loose rods move on their springs, as a multiple of what they deform.
 SOFT = 1e2
 # Forces, gaps and unbalanced loads this small against the largest may be round-off.
@@ -89,12 +91,14 @@ class ActiveSet:
         self.active = active
         self._problem = problem
         self._soft = 1.0 / problem.spring[active]
-        chosen = problem.compliance[np.ix_(active, active)]
-        chosen[np.diag_indices_from(chosen)] += self._soft
-        self._factor = cho_factor(chosen, lower=True, check_finite=False) if len(chosen) else None
+        self._compliance = problem.compliance[np.ix_(active, active)]
+        sprung = self._compliance.copy()
+        sprung[np.diag_indices_from(sprung)] += self._soft
+        self._factor = cho_factor(sprung, lower=True, check_finite=False) if len(sprung) else None
         self._opening = problem.motion[active]
         self._by_motion = self._solve(self._opening)
-        self._motion_stiffness = self._opening.T @ self._by_motion
+        # Least squares where the points do not hold all motions.
+        self._motion_flexibility = np.linalg.pinv(self._opening.T @ self._by_motion, rcond=NO_STIFFNESS, hermitian=True)
 
     def _solve(self, right: Array) -> Array:
         return right if self._factor is None else cho_solve(self._factor, right, check_finite=False)
@@ -105,29 +109,30 @@ class ActiveSet:
         gap, load : of all points, shape (n,) or several (n, m); on the motions, shape (n_motions,) or (n_motions, m)
         """
         force = np.zeros_like(gap)
-        found = -self._solve(gap[self.active])
-        motion = np.zeros_like(load)
-        if len(load):
-            # Condensed onto the motions; least squares where the points do not hold all of them.
-            motion = np.asarray(np.linalg.lstsq(self._motion_stiffness, load + self._opening.T @ found)[0])
-            found = found - self._by_motion @ motion
-        force[self.active] = found
+        force[self.active], motion = self._closing(gap[self.active], load)
         return force, motion
 
-    def forces(self, multiplier: Array) -> tuple[Array, Array]:
-        """Forces and motions of the problem, shapes (n,) and (n_motions,), given the multipliers, shape (n,)."""
-        problem = self._problem
-        return self.respond(problem.gap - multiplier / problem.spring, problem.motion_load)
+    def _closing(self, gap: Array, load: Array) -> tuple[Array, Array]:
+        """Like `respond`, gaps and forces of the chosen points alone."""
+        found = -self._solve(gap)
+        if not len(load):
+            return found, np.zeros_like(load)
+        motion = self._motion_flexibility @ (load + self._opening.T @ found)
+        return found - self._by_motion @ motion, motion
 
     def settled_forces(self) -> tuple[Array, Array]:
         """Forces and motions of the problem with the multipliers that take the springs' penetration away."""
-        multiplier, left = np.zeros_like(self._problem.gap), np.inf
+        gap, rigid = self._problem.gap[self.active], self._problem.rigid[self.active]
+        multiplier, left = np.zeros_like(gap), np.inf
         for _ in range(MOST_STEPS):
-            force, motion = self.forces(multiplier)
-            before, multiplier = multiplier, np.where(self._problem.rigid, force, 0.0)
-            left_before, left = left, _energy_left(self._problem, multiplier, before)
+            found, motion = self._closing(gap - multiplier * self._soft, self._problem.motion_load)
+            before, multiplier = multiplier, np.where(rigid, found, 0.0)
+            held = float(np.sum((multiplier - before) ** 2 * self._soft))
+            left_before, left = left, _share(held, float(multiplier @ self._compliance @ multiplier))
             if _is_settled(left, left_before):
                 break
+        force = np.zeros_like(self._problem.gap)
+        force[self.active] = found
         return force, motion
 
 
@@ -137,8 +142,14 @@ def _is_settled(left: float, left_before: float) -> bool:
 
 def _energy_left(problem: ContactProblem, multiplier: Array, before: Array) -> float:
     """What the springs still hold, as a share of what the rods and they do."""
-    left = float(np.sum((multiplier - before) ** 2 / problem.spring))
-    return left / ((float(multiplier @ problem.compliance @ multiplier) + left) or 1.0)
+    touching = np.flatnonzero(multiplier)
+    pressing = multiplier[touching]
+    rods = float(pressing @ problem.compliance[np.ix_(touching, touching)] @ pressing)
+    return _share(float(np.sum((multiplier - before) ** 2 / problem.spring)), rods)
+
+
+def _share(springs: float, rods: float) -> float:
+    return springs / ((springs + rods) or 1.0)
 
 
 def unilateral_contact(problem: ContactProblem, settled: bool = True, guess: BoolArray | None = None) -> ContactForces:
@@ -160,7 +171,7 @@ def unilateral_contact(problem: ContactProblem, settled: bool = True, guess: Boo
     multiplier, left = force, np.inf
     outcome, balance = "stagnated: the multipliers did not settle", 0.0
     largest, size = 0.0, float(np.abs(problem.motion_load).max(initial=0.0))
-    active = np.empty(0, dtype=bool)
+    active = tried = np.empty(0, dtype=bool)
     slow = stiffened = 0
     for _ in range(MOST_STEPS):
         hung = problem.gap + problem.motion @ (motion + flexibility @ problem.motion_load)
@@ -187,10 +198,11 @@ def unilateral_contact(problem: ContactProblem, settled: bool = True, guess: Boo
             # Points next to which nothing yields, as at a clamp: their springs must be stiffer still.
             problem = replace(problem, spring=np.where(problem.rigid, STIFFENED * problem.spring, problem.spring))
             pushing = PushingForces(_with_springs(hanging, problem), pushing.active, pushing.active_sets)
-            slow, stiffened = 0, stiffened + 1
+            slow, stiffened, tried = 0, stiffened + 1, np.empty(0, dtype=bool)
         active_before, active = active, pushing.active
-        if settled and np.array_equal(active, active_before):
+        if settled and np.array_equal(active, active_before) and not np.array_equal(active, tried):
             # The set may be the one in the end: what it answers at once takes the steps many.
+            tried = active
             answer = _serving(problem, active, largest, size)
             if answer is not None:
                 return ContactForces(*answer, "converged", pushing.active_sets + 1)
