@@ -1,4 +1,4 @@
-"""The command `rodcheck`: list, solve, compare, report, deck, verify, performance, stability and schema.
+"""The command `rodcheck`: list, solve, compare, report, nightly, history, deck, verify, performance, stability, schema.
 
 Heavy imports wait until a command needs them. Bad input is answered by one sentence on standard error and
 exit code 2; a verdict other than 'pass', a solver that did not converge or a case that failed by exit code 1. The
@@ -110,16 +110,23 @@ def solve(
 
     Parameters
     ----------
-    case : name of a case of the library, or path of a case file
-    model : the rod model, or the 3D reference
-    level : k of the rod model h_k, 1 to 12; the case file's where it is not given
-    order : order p of the rod model along the rods, 2 to 20; the case file's where it is not given
-    mesh : file with a mesh that the 3D reference takes instead of its own, in any format that meshio reads: hexahedra
+    case
+        name of a case of the library, or path of a case file
+    model
+        the rod model, or the 3D reference
+    level
+        k of the rod model h_k, 1 to 12; the case file's where it is not given
+    order
+        order p of the rod model along the rods, 2 to 20; the case file's where it is not given
+    mesh
+        file with a mesh that the 3D reference takes instead of its own, in any format that meshio reads: hexahedra
         of 8, 20 or 27 nodes or tetrahedra of 4 or 10, in groups named after the rods (ROD for its elements, ROD.start
         and ROD.end for clamped ends, ROD.top and so on for faces that are the first of a contact pair)
-    vtu : file, ending in .vtu, for displacement and stress of the bodies (stress and von_mises in global axes, stress_s
+    vtu
+        file, ending in .vtu, for displacement and stress of the bodies (stress and von_mises in global axes, stress_s
         along the rods; N, mm, MPa); points of contact go to NAME-contact.vtu beside it
-    json : print exactly one JSON object, described by `rodcheck schema result`
+    json
+        print exactly one JSON object, described by `rodcheck schema result`
     """
     from cases.loader import load_case
 
@@ -166,10 +173,14 @@ def compare(*cases: str, cache: Path | None = None, no_cache: NoCache = False, n
 
     Parameters
     ----------
-    cases : names of cases of the library, or paths of case files
-    cache : folder of results; without it, rodcheck in $XDG_CACHE_HOME or ~/.cache
-    no_cache : compute everything, and keep nothing
-    no_peers : leave out solvers that are not of this project, CalculiX and NGSolve, which are asked where installed
+    cases
+        names of cases of the library, or paths of case files
+    cache
+        folder of results; without it, rodcheck in $XDG_CACHE_HOME or ~/.cache
+    no_cache
+        compute everything, and keep nothing
+    no_peers
+        leave out solvers that are not of this project, CalculiX and NGSolve, which are asked where installed
     """
     if not cases:
         raise InputError("compare: name at least one case; `rodcheck list` prints those of the library")
@@ -196,11 +207,16 @@ def report(
 
     Parameters
     ----------
-    cases : names of cases of the library, or paths of case files; without any, the whole library
-    output : folder for index.html and the results
-    cache : folder of results; without it, rodcheck in $XDG_CACHE_HOME or ~/.cache
-    no_cache : compute everything, and keep nothing
-    no_peers : leave out solvers that are not of this project, CalculiX and NGSolve, which are asked where installed
+    cases
+        names of cases of the library, or paths of case files; without any, the whole library
+    output
+        folder for index.html and the results
+    cache
+        folder of results; without it, rodcheck in $XDG_CACHE_HOME or ~/.cache
+    no_cache
+        compute everything, and keep nothing
+    no_peers
+        leave out solvers that are not of this project, CalculiX and NGSolve, which are asked where installed
     """
     from cases.loader import library_names
 
@@ -223,6 +239,117 @@ def report(
 
 
 @app.command
+def nightly(
+    *cases: str,
+    output: Path = Path("nightly"),
+    scheduler: str | None = None,
+    memory_limit: str | None = None,
+    time_limit: str = "20 min",
+    cache: Path | None = None,
+    no_cache: NoCache = False,
+    no_peers: NoPeers = False,
+) -> int:
+    """Run cases through Dask and write report, history and a short summary; say what moved since earlier runs.
+
+    Interrupted and started again it goes on where it was. A case that fails, hangs or takes too much memory is
+    reported and stops nothing. Exit code 1 if a verdict is not 'pass' or something moved.
+
+    Parameters
+    ----------
+    cases : names of cases of the library, or paths of case files; without any, the whole library
+    output : folder for index.html, results, summary.txt and the history, a file a run
+    scheduler : address of a Dask scheduler whose workers have rodcheck installed, such as tls://host:8786; without
+        it, this machine does the work
+    memory_limit : of a case with all its processes, such as 4GB; without it, an equal part of the machine's memory
+    time_limit : of a case, such as "20 min" or 3600s
+    cache : folder of results; without it, rodcheck in $XDG_CACHE_HOME or ~/.cache
+    no_cache : compute everything, and keep nothing
+    no_peers : leave out solvers that are not of this project, CalculiX and NGSolve, which are asked where installed
+    """
+    from cases.loader import library_names
+
+    loaded = _load_all(cases or library_names())
+    _require_folder(output)
+    results = _cache(cache, no_cache)
+    from reports.nightly.limits import LimitError, limits
+
+    try:
+        allowed = limits(memory_limit, time_limit)
+    except LimitError as error:
+        raise InputError(str(error)) from error
+    from reports.nightly.cluster import ClusterError
+    from reports.nightly.run import nightly as carry_out
+    from reports.nightly.unfinished import Busy, locked
+
+    try:
+        with locked(output):
+            outcome = carry_out(
+                loaded,
+                output,
+                cache=None if results is None else results.folder.absolute(),
+                peers=not no_peers,
+                limits=allowed,
+                scheduler=scheduler,
+            )
+    except Busy as error:
+        raise InputError(
+            f"--output: another nightly run is at work in {output}; wait for it, or give another"
+        ) from error
+    except ClusterError as error:
+        raise InputError(str(error)) from error
+    except OSError as error:
+        where = f"cannot write to {error.filename or output} ({error.strerror})"
+        raise InputError(f"--output: {where}; make room or give another folder, finished cases are kept") from error
+    except KeyboardInterrupt:
+        print("rodcheck: interrupted; start it again to go on", file=sys.stderr)
+        return INTERRUPTED
+    print(outcome.summary, end="")
+    print(f"\nReport: {output / 'index.html'}")
+    return 0 if outcome.as_expected else NOT_PASSED
+
+
+@app.command
+def history(
+    case: str,
+    quantity: str | None = None,
+    /,
+    *,
+    folder: Path = Path("nightly/history"),
+    json: Annotated[bool, Parameter(name="--json", negative=())] = False,
+) -> int:
+    """Print what nightly runs said of a case.
+
+    Parameters
+    ----------
+    case : its name
+    quantity : one of its quantities, such as contact_force
+    folder : of the history
+    json : print one JSON array, an object for each quantity of each solver in each run
+    """
+    if folder.exists() and not folder.is_dir():
+        raise InputError(f"--folder: found the file {folder}; give a folder")
+    from reports.nightly.history import read_history
+    from reports.nightly.history_table import as_json, print_history
+
+    found = read_history(folder)
+    for note in found.notes:
+        print(f"rodcheck: {note}", file=sys.stderr)
+    rows = found.rows(case, quantity)
+    if not rows:
+        known = found.cases()
+        if case in known:
+            others = sorted({row.quantity for row in found.rows(case)})
+            raise InputError(f"found no quantity {quantity!r} of {case} in {folder}; it has {', '.join(others)}")
+        has = f"it has {', '.join(known)}" if known else "it has none; `rodcheck nightly` writes it"
+        raise InputError(f"found no case {case!r} in {folder}; {has}")
+    if json:
+        print(as_json(rows))
+    else:
+        print_history(rows)
+    return 0
+
+
+@app.command
 def deck(
     case: str,
     /,
@@ -234,9 +361,12 @@ def deck(
 
     Parameters
     ----------
-    case : name of a case of the library, or path of a case file
-    output : the file, ending in .inp
-    refinement : elements along each axis of a coarse cell; the 3D reference's meshes have 1, 2 and 3
+    case
+        name of a case of the library, or path of a case file
+    output
+        the file, ending in .inp
+    refinement
+        elements along each axis of a coarse cell; the 3D reference's meshes have 1, 2 and 3
     """
     from cases.loader import load_case
 
@@ -262,7 +392,8 @@ def verify(*, output: Path = Path("report")) -> int:
 
     Parameters
     ----------
-    output : folder for verification.html
+    output
+        folder for verification.html
     """
     _require_folder(output)
     outcomes = _verification_outcomes()
@@ -283,7 +414,8 @@ def performance(*, output: Path = Path("report")) -> int:
 
     Parameters
     ----------
-    output : folder for performance.html
+    output
+        folder for performance.html
     """
     _require_folder(output)
     page = _write_performance(output, aloud=True)
@@ -299,7 +431,8 @@ def stability(*, output: Path = Path("report")) -> int:
 
     Parameters
     ----------
-    output : folder for stability.html
+    output
+        folder for stability.html
     """
     _require_folder(output)
     found = _stability()

@@ -304,6 +304,12 @@ def test_the_command_itself_keeps_its_streams_apart() -> None:
     assert done.stderr.count("\n") == 1
 
 
+def test_help_says_what_every_argument_is() -> None:
+    for name in (each for each in command_line.app if not each.startswith("-")):
+        for argument in command_line.app[name].assemble_argument_collection(parse_docstring=True):
+            assert argument.parameter.help, f"{name} {argument.name}"
+
+
 def test_listing_cases_imports_no_solver_and_nothing_that_draws() -> None:
     call = (
         "import sys; from reports.command_line import run; run(['list']);"
