@@ -256,15 +256,23 @@ def nightly(
 
     Parameters
     ----------
-    cases : names of cases of the library, or paths of case files; without any, the whole library
-    output : folder for index.html, results, summary.txt and the history, a file a run
-    scheduler : address of a Dask scheduler whose workers have rodcheck installed, such as tls://host:8786; without
+    cases
+        names of cases of the library, or paths of case files; without any, the whole library
+    output
+        folder for index.html, results, summary.txt and the history, a file a run
+    scheduler
+        address of a Dask scheduler whose workers have rodcheck installed, such as tls://host:8786; without
         it, this machine does the work
-    memory_limit : of a case with all its processes, such as 4GB; without it, an equal part of the machine's memory
-    time_limit : of a case, such as "20 min" or 3600s
-    cache : folder of results; without it, rodcheck in $XDG_CACHE_HOME or ~/.cache
-    no_cache : compute everything, and keep nothing
-    no_peers : leave out solvers that are not of this project, CalculiX and NGSolve, which are asked where installed
+    memory_limit
+        of a case with all its processes, such as 4GB; without it, an equal part of the machine's memory
+    time_limit
+        of a case, such as "20 min" or 3600s
+    cache
+        folder of results; without it, rodcheck in $XDG_CACHE_HOME or ~/.cache
+    no_cache
+        compute everything, and keep nothing
+    no_peers
+        leave out solvers that are not of this project, CalculiX and NGSolve, which are asked where installed
     """
     from cases.loader import library_names
 
@@ -321,10 +329,14 @@ def history(
 
     Parameters
     ----------
-    case : its name
-    quantity : one of its quantities, such as contact_force
-    folder : of the history
-    json : print one JSON array, an object for each quantity of each solver in each run
+    case
+        its name
+    quantity
+        one of its quantities, such as contact_force
+    folder
+        of the history
+    json
+        print one JSON array, an object for each quantity of each solver in each run
     """
     if folder.exists() and not folder.is_dir():
         raise InputError(f"--folder: found the file {folder}; give a folder")
