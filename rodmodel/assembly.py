@@ -79,6 +79,11 @@ class ElementStore:
             self._elements[key] = condensed_element(self._families[kind], length)
         return self._elements[key]
 
+    def forget(self, most: int) -> None:
+        """Let go of the oldest elements beyond so many."""
+        for key in list(self._elements)[:-most]:
+            del self._elements[key]
+
     def _varying(self, rod: Rod, springs: Springs, fields: Fields, order: int, ends: tuple[float, float]) -> Element:
         material, line = per_axial_modulus(rod.material), rod.centre_line
         key = (line, rod.section, material, fields, order, springs, ends)
@@ -268,12 +273,32 @@ def added(first: Functionals, second: Functionals) -> Functionals:
 
 def compliance(functionals: Functionals) -> Array:
     """F^T K^-1 F, shape (m, m): the displacement of each functional under each as a load."""
-    result = functionals.nodal.T @ functionals.nodal
-    for index, members, half in functionals.bubbles:
-        for other_index, other_members, other_half in functionals.bubbles:
+    return cross_compliance(functionals, functionals)
+
+
+def cross_compliance(first: Functionals, second: Functionals) -> Array:
+    """F_1^T K^-1 F_2 of functionals on the same rod, shape (m_1, m_2)."""
+    result = first.nodal.T @ second.nodal
+    for index, members, half in first.bubbles:
+        for other_index, other_members, other_half in second.bubbles:
             if index == other_index:
                 result[np.ix_(members, other_members)] += half.T @ other_half
     return np.asarray(result)
+
+
+def scaled(functionals: Functionals, factor: float) -> Functionals:
+    """The functionals, half solved, on a rod whose modulus is 1 / factor^2 times that of theirs."""
+    bubbles = tuple((index, members, half * factor) for index, members, half in functionals.bubbles)
+    return Functionals(functionals.nodal * factor, functionals.held, bubbles)
+
+
+def last_replaced(functionals: Functionals, load: Functionals) -> Functionals:
+    """The functionals with another one (m = 1) in the last one's place, which has shares in elements of its own."""
+    last = functionals.nodal.shape[1] - 1
+    bubbles = [entry for entry in functionals.bubbles if entry[1][0] != last]
+    bubbles += [(index, np.array([last]), half) for index, _, half in load.bubbles]
+    held = {node: np.column_stack([values[:, :-1], load.held[node]]) for node, values in functionals.held.items()}
+    return Functionals(np.column_stack([functionals.nodal[:, :-1], load.nodal]), held, tuple(bubbles))
 
 
 def held_parts(assembled: AssembledRod, displacement: Mapping[int, Array]) -> list[Part]:

@@ -11,11 +11,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
 
+from cases.scene import CentreLine, Section
 from rodmodel.assembly import AssembledRod
 from rodmodel.centre_line import centre_points, constant_turnings, frames
 from rodmodel.holds import extended, restricted
@@ -51,7 +52,6 @@ def lost_accuracy(assembled: AssembledRod, coefficients: Sequence[Array]) -> flo
     if size == 0.0:
         return 0.0
     force = np.zeros((chain.size, 1))
-    motions = _node_motions(assembled)
     for kind in _alike(assembled):
         element = assembled.elements[kind[0]]
         count = element.fields.count
@@ -60,7 +60,7 @@ def lost_accuracy(assembled: AssembledRod, coefficients: Sequence[Array]) -> flo
             given[place] = coefficients[index][:2]
             for side in (0, 1):
                 own[place, side] = extended(carried[chain.rows[index + side]], chain.ends[index][side], count)
-        internal = (own.reshape(len(kind), -1) + _rigid_part(assembled, kind[0], motions, given)) @ element.condensed
+        internal = (own.reshape(len(kind), -1) + _rigid_part(assembled, kind[0], given)) @ element.condensed
         for place, index in enumerate(kind):
             for side, nodal in enumerate(internal[place].reshape(2, count)):
                 force[chain.rows[index + side], 0] += restricted(nodal, chain.ends[index][side])
@@ -82,41 +82,34 @@ def _alike(assembled: AssembledRod) -> list[list[int]]:
     return list(kinds.values())
 
 
-@dataclass(frozen=True, eq=False)
-class _NodeMotions:
-    """Where nodes are, mm, shape (3, n), their frames, rows e1, e2, t, shape (n, 3, 3), and sections' rigid motions."""
-
-    points: Array
-    axes: Array
-    local: dict[Fields, Array]
-
-
-def _node_motions(assembled: AssembledRod) -> _NodeMotions:
-    rod, borders = assembled.rod, assembled.borders
-    local = {fields: rigid_motions(rod.section, fields) for fields in {each.fields for each in assembled.elements}}
-    return _NodeMotions(centre_points(rod.centre_line, borders), frames(rod.centre_line, borders), local)
-
-
-def _rigid_part(assembled: AssembledRod, index: int, motions: _NodeMotions, nodal: Array) -> Array:
+def _rigid_part(assembled: AssembledRod, index: int, nodal: Array) -> Array:
     """Rigid motions nearest to displacements of an element's nodes; zero where its order does not hold them.
 
     nodal : of elements like number `index`, shape (n, 2, n_fields); the result has shape (n, 2 n_fields)
     """
     flat = nodal.reshape(len(nodal), -1)
-    element = assembled.elements[index]
-    turning = constant_turnings(assembled.rod.centre_line, assembled.borders[index : index + 2])[0]
+    element, line = assembled.elements[index], assembled.rod.centre_line
+    turning = constant_turnings(line, assembled.borders[index : index + 2])[0]
     if turning is None or _left_out(math.hypot(*turning) * element.length, element.order) > UNSEEN:
         return np.zeros_like(flat)
-    local = motions.local[element.fields]
-    # About the start: there rotations displace nothing, at the end they move the centre by axis x arm.
-    a1, a2, a3 = motions.points[:, index + 1] - motions.points[:, index]
-    by_arm = np.array([[0.0, -a3, a2], [a3, 0.0, -a1], [-a2, a1, 0.0]])
-    start, end = (np.kron(np.eye(2), axes.T) @ local for axes in motions.axes[index : index + 2])
-    end[3:] += by_arm @ end[:3]
-    basis = np.linalg.svd(np.concatenate([start, end], axis=1), full_matrices=False)
-    # Symmetry leaves some motions out.
-    kept = basis.Vh[NO_MOTION * basis.S[0] < basis.S]
+    start, end = assembled.borders[index : index + 2].tolist()
+    kept = _rigid_basis(line, assembled.rod.section, element.fields, start, end)
     return np.asarray((flat @ kept.T) @ kept)
+
+
+@lru_cache(maxsize=64)
+def _rigid_basis(line: CentreLine, section: Section, fields: Fields, start: float, end: float) -> Array:
+    """Orthonormal rigid motions of the nodes of an element between two stations, shape (n_motions, 2 n_fields)."""
+    borders = np.array([start, end])
+    points, local = centre_points(line, borders), rigid_motions(section, fields)
+    # About the start: there rotations displace nothing, at the end they move the centre by axis x arm.
+    a1, a2, a3 = points[:, 1] - points[:, 0]
+    by_arm = np.array([[0.0, -a3, a2], [a3, 0.0, -a1], [-a2, a1, 0.0]])
+    at_start, at_end = (np.kron(np.eye(2), axes.T) @ local for axes in frames(line, borders))
+    at_end[3:] += by_arm @ at_end[:3]
+    basis = np.linalg.svd(np.concatenate([at_start, at_end], axis=1), full_matrices=False)
+    # Symmetry leaves some motions out.
+    return np.asarray(basis.Vh[NO_MOTION * basis.S[0] < basis.S])
 
 
 def _left_out(angle: float, order: int) -> float:
