@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 from reports.chart.points import (
@@ -23,6 +23,11 @@ from reports.chart.points import (
 TOLERANCES = (0.01, 0.001, 0.0002)
 RACED: tuple[Charted, ...] = ("contact_force", "largest_deflection")
 ROD = "rod model"
+# What points cost, by name.
+COSTS: Mapping[str, Callable[[Point], float]] = {
+    "seconds": lambda point: point.median,
+    "unknowns": lambda point: float(point.unknowns),
+}
 # Who races, and the methods whose cheapest configuration counts for it.
 RUNNERS = {
     ROD: (ROD_OWN, ROD_GRADED, ROD_AUTO),

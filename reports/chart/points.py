@@ -38,7 +38,7 @@ CALCULIX, NGSOLVE = "CalculiX", "NGSolve"
 NGSOLVE_TUNED, NGSOLVE_BOUNDARY = "NGSolve, tuned and condensed", "NGSolve, ContactBoundary"
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Point:
     """One configuration of a method.
 
