@@ -1,4 +1,5 @@
 # make report   every case of the library, solved both ways, as a page: report/index.html
+# make nightly  the same through Dask, with its history and what moved: nightly/index.html, nightly/summary.txt
 # make test     the whole test suite
 # make check    quick tests, ruff, mypy: under a minute
 # make bench    what a solve costs
@@ -11,7 +12,7 @@ RUN := .venv/bin
 export OMP_NUM_THREADS ?= 1
 export OPENBLAS_NUM_THREADS ?= 1
 
-.PHONY: setup report test check bench
+.PHONY: setup report nightly test check bench
 
 setup:
 	@command -v $(PYTHON) >/dev/null || { echo "setup: no $(PYTHON); install it (Debian, Ubuntu: apt-get install python3 python3-venv)" >&2; exit 1; }
@@ -19,6 +20,9 @@ setup:
 
 report: setup
 	$(RUN)/rodcheck report
+
+nightly: setup
+	$(RUN)/rodcheck nightly
 
 test: setup
 	$(RUN)/python -m pytest

@@ -16,6 +16,7 @@ import plotly.graph_objects as go
 
 from cases.case import Quantity
 from cases.scene import ContactPair
+from reports.chart.page import chart_part, write_chart_numbers
 from reports.comparison import Comparison
 from reports.figures import deflection_figure, moment_figure, pressure_figure
 from reports.formatting import (
@@ -80,19 +81,22 @@ class DrawnPicture:
     problem: str
 
 
-def write_report(runs: Sequence[CaseRun | Failure], output: Path, pages: Sequence[str] = ()) -> Path:
+def write_report(
+    runs: Sequence[CaseRun | Failure], output: Path, pages: Sequence[str] = (), moved: Sequence[str] | None = None
+) -> Path:
     """Write `index.html` and `results/*.json` into the folder `output`; returns the page's path.
 
     Parameters
     ----------
     pages : file names of the pages beside it, those of `PAGES` that there are
+    moved : what moved since earlier runs, a line each; None where nobody looked
 
     Raises
     ------
     OSError
         if the folder or a file cannot be written.
     """
-    page = render(runs, pictures(runs), pages)
+    page = render(runs, pictures(runs), pages, moved)
     for run in runs:
         if isinstance(run, CaseRun):
             _write_results(run, output / "results")
@@ -100,8 +104,13 @@ def write_report(runs: Sequence[CaseRun | Failure], output: Path, pages: Sequenc
     return output / "index.html"
 
 
-def render(runs: Sequence[CaseRun | Failure], drawn: Mapping[str, DrawnPicture], pages: Sequence[str] = ()) -> str:
-    """The page as HTML, with links to the pages beside it."""
+def render(
+    runs: Sequence[CaseRun | Failure],
+    drawn: Mapping[str, DrawnPicture],
+    pages: Sequence[str] = (),
+    moved: Sequence[str] | None = None,
+) -> str:
+    """The page as HTML, with links to the pages beside it and, where it is known, what moved since earlier runs."""
     cases, figures = [], {}
     for index, run in enumerate(runs, start=1):
         anchor = f"case-{index}"
@@ -119,6 +128,7 @@ def render(runs: Sequence[CaseRun | Failure], drawn: Mapping[str, DrawnPicture],
         definitions=DEFINITIONS.values(),
         repeats=ROD_REPEATS,
         pages=[(page, *PAGES[page]) for page in pages],
+        moved=moved,
     )
 
 
@@ -190,6 +200,8 @@ def _case(run: CaseRun, anchor: str, picture: DrawnPicture) -> tuple[dict[str, A
         alt = f"{heading} of {case.title}, {models}; the numbers are in the results beside the page."
         height = figure.layout.height
         places.append({"anchor": place, "title": heading, "caption": caption, "alt": alt, "height": height})
+    chart, panels = (None, {}) if run.chart is None else chart_part(run.chart, anchor)
+    figures.update(panels)
     counts: dict[str, int] = dict.fromkeys(("pass", "fail", "not resolved"), 0)
     counts.update(Counter(comparison.verdict for comparison in run.comparisons))
     warnings = [f"The 3D reference cannot treat this case yet. {run.refusal}"] if run.refusal else []
@@ -218,6 +230,7 @@ def _case(run: CaseRun, anchor: str, picture: DrawnPicture) -> tuple[dict[str, A
         "checks": _check_groups(run.comparisons),
         "sections": section_table(case.scene.rods),
         "peers": peers_table(run),
+        "chart": chart,
         "costs": [_cost_row(solver, answer) for solver, answer in _solvers(run)],
     }
     return content, figures
@@ -340,3 +353,5 @@ def _write_results(run: CaseRun, folder: Path) -> None:
     write_whole(folder / f"{run.case.name}-comparisons.json", text + "\n")
     beside = as_json(run.side_by_side, run.peers, run.rod.quantities)
     write_whole(folder / f"{run.case.name}-peers.json", json.dumps(beside, indent=1, allow_nan=False) + "\n")
+    if run.chart is not None:
+        write_chart_numbers(run.case, run.chart, folder)
