@@ -1,4 +1,4 @@
-"""The command `rodcheck`: list, solve, compare, report, nightly, history, deck, verify, performance, stability, schema.
+"""The command `rodcheck`: list, solve, compare, sweep, report, chart, nightly, history, deck, verify and so on.
 
 Heavy imports wait until a command needs them. Bad input is answered by one sentence on standard error and
 exit code 2; a verdict other than 'pass', a solver that did not converge or a case that failed by exit code 1. The
@@ -45,6 +45,7 @@ app.command(schema_app)
 
 Level = Annotated[int | None, Parameter(validator=validators.Number(gte=1, lte=12))]
 NoCache = Annotated[bool, Parameter(name="--no-cache", negative=())]
+NoCharts = Annotated[bool, Parameter(name="--no-charts", negative=())]
 NoPeers = Annotated[bool, Parameter(name="--no-peers", negative=())]
 Order = Annotated[int | None, Parameter(validator=validators.Number(gte=2, lte=20))]
 
@@ -193,12 +194,62 @@ def compare(*cases: str, cache: Path | None = None, no_cache: NoCache = False, n
 
 
 @app.command
+def sweep(
+    case: str,
+    /,
+    *,
+    vary: Annotated[tuple[str, ...], Parameter(negative=())],
+    level: Level = None,
+    order: Order = None,
+    output: Path = Path("sweep"),
+) -> int:
+    """Solve a case with the rod model for many values of a key; write tables (CSV, Parquet) and a plot (HTML).
+
+    Every value is solved, beginning with what the ones before have left. The tables have one row for each value and
+    quantity.
+
+    Parameters
+    ----------
+    case : name of a case of the library, or path of a case file
+    vary : KEY=FIRST..LAST UNIT:COUNT, such as rods.upper.E=20..200GPa:30 or "loads.1.force.2=-2..-0.1 kN:20"; with :log
+        at the end the values have even ratios. The key is a path into the case file, entries of lists by their number
+        from 1; rods.NAME.KEY may also be a key of the rod's material (E, nu, rho for short) or section, changed for
+        this rod alone. Given again for another key: all combinations.
+    level : k of the rod model h_k, 1 to 12; the case file's where it is not given
+    order : order p of the rod model along the rods, 2 to 20; the case file's where it is not given
+    output : folder for the files, which are named after the case
+    """
+    from reports.sweep.keys import SweepError, sweep_points, variation
+
+    try:
+        variations = [variation(text) for text in vary]
+        points = sweep_points(case, variations, level, order)
+    except SweepError as error:
+        raise InputError(str(error)) from error
+    _require_folder(output)
+    from reports.progress import progress
+    from reports.sweep.files import notes, write_sweep
+    from reports.sweep.run import sweep_rows
+
+    rows = [
+        row for found in progress(sweep_rows(points, variations), len(points), points[0].case.name) for row in found
+    ]
+    sentences = notes(rows, len(points))
+    for path in _all_written(lambda: write_sweep(rows, variations, points[0].case, output, sentences)):
+        print(path)
+    for sentence in sentences:
+        print(f"rodcheck: {sentence}", file=sys.stderr)
+    return 0 if all(row.outcome == "converged" for row in rows) else NOT_PASSED
+
+
+@app.command
 def report(
     *cases: str,
     output: Path = Path("report"),
     cache: Path | None = None,
     no_cache: NoCache = False,
     no_peers: NoPeers = False,
+    no_charts: NoCharts = False,
 ) -> int:
     """Solve cases both ways and write one self-contained page, with the results as JSON beside it.
 
@@ -217,6 +268,8 @@ def report(
         compute everything, and keep nothing
     no_peers
         leave out solvers that are not of this project, CalculiX and NGSolve, which are asked where installed
+    no_charts
+        leave out the charts of speed against accuracy, which take some ten seconds a case where the cache has none
     """
     from cases.loader import library_names
 
@@ -227,6 +280,7 @@ def report(
     from reports.site import write_report
 
     runs = _run_all(loaded, results, not no_peers)
+    runs = runs if no_charts else _charted(runs, results)
     outcomes = None if cases else _verification_outcomes()
     verification = None if outcomes is None else _write_verification(outcomes, output)
     performance = None if cases else _write_performance(output)
@@ -236,6 +290,57 @@ def report(
     print(_written(lambda: write_report(runs, output, pages)))
     incomplete = any(isinstance(run, Failure) for run in runs) or (not cases and len(pages) < 3)
     return NOT_PASSED if incomplete else 0
+
+
+@app.command
+def chart(
+    case: str,
+    /,
+    *,
+    output: Path = Path("report"),
+    cache: Path | None = None,
+    no_cache: NoCache = False,
+    no_peers: NoPeers = False,
+) -> int:
+    """Chart error against seconds and unknowns of a case, every method and configuration in the same axes.
+
+    Prints the cheapest configuration of every method that keeps 1 %, 0.1 % and 0.02 %, and writes the chart. What the
+    same code has measured before is taken from the cache, and says so.
+
+    Parameters
+    ----------
+    case
+        name of a case of the library, or path of a case file
+    output
+        folder for chart-CASE.html and, in results, its numbers
+    cache
+        folder of results; without it, rodcheck in $XDG_CACHE_HOME or ~/.cache
+    no_cache
+        measure everything in this run, and keep nothing
+    no_peers
+        leave out solvers that are not of this project, CalculiX and NGSolve on their own meshes
+    """
+    from cases.loader import load_case
+
+    loaded = load_case(case)
+    _require_folder(output)
+    results = _cache(cache, no_cache)
+    from reports.chart.page import write_chart
+    from reports.chart.wording import print_race
+    from reports.runner import CaseRun
+
+    (run,) = _charted(_run_all([loaded], results, not no_peers), results)
+    if not isinstance(run, CaseRun):
+        print(f"rodcheck: {loaded.name}: {run.reason}", file=sys.stderr)
+        return NOT_PASSED
+    assert run.chart is not None  # as it was asked for
+    if not run.chart.points:
+        print(f"rodcheck: {loaded.name}: {' '.join(run.chart.notes)}", file=sys.stderr)
+        return NOT_PASSED
+    found = run.chart
+    print_race(found)
+    print(_written(lambda: write_chart(loaded, found, output)))
+    return 0
 
 
 @app.command
@@ -483,6 +588,11 @@ def _require_folder(output: Path) -> None:
 
 def _written(write: Callable[[], Path]) -> Path:
     """The path of what was written."""
+    return _all_written(lambda: (write(),))[0]
+
+
+def _all_written(write: Callable[[], tuple[Path, ...]]) -> tuple[Path, ...]:
+    """The paths of what was written."""
     try:
         return write()
     except OSError as error:
@@ -594,6 +704,15 @@ def _run_all(cases: Sequence[Case], cache: Cache | None, peers: bool) -> list[Ca
     for note in dict.fromkeys(notes):
         print(f"rodcheck: {note}", file=sys.stderr)
     return runs
+
+
+def _charted(runs: Sequence[CaseRun | Failure], cache: Cache | None) -> list[CaseRun | Failure]:
+    """The runs with charts of speed against accuracy."""
+    from reports.chart.measure import charted
+    from reports.progress import status
+
+    with status("charts") as shown:
+        return charted(runs, lambda case: shown.update(f"{case.name}: chart"), cache)
 
 
 def _exit_code(runs: Sequence[CaseRun | Failure]) -> int:

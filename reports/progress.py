@@ -2,19 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import AbstractContextManager
+from typing import TypeVar
 
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
+from rich.status import Status
 
 from cases.case import Case
 from reports.cache import Cache
 from reports.peers import PEERS
 from reports.runner import STEPS, CaseRun, Failure, run_cases
 
+Step = TypeVar("Step")
 
-def status(text: str) -> AbstractContextManager[object]:
+
+def status(text: str) -> AbstractContextManager[Status]:
     """A spinner with a text while something of unknown length goes on."""
     return Console(stderr=True).status(text)
 
@@ -43,3 +47,14 @@ def run_with_progress(
             bars.update(task, completed=steps * index)
             runs.append(run)
     return runs
+
+
+def progress(steps: Iterable[Step], count: int, text: str) -> Iterator[Step]:
+    """Steps one after the other behind a progress bar.
+
+    count : how many there are
+    """
+    console = Console(stderr=True)
+    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
+    with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as bars:
+        yield from bars.track(steps, total=count, description=text)

@@ -18,6 +18,7 @@ from cases.case import Case, Grades
 from cases.scene import Scene, SceneError
 from reports.cache import Cache
 from reports.case_comparison import case_comparisons, comparisons_without_reference, evaluation_points
+from reports.chart.points import Chart
 from reports.code_version import code_version
 from reports.comparison import Comparison, Extrapolate, Extrapolation
 from reports.memory import peak_memory
@@ -83,6 +84,7 @@ class CaseRun:
     peers : what came of asking those solvers; none where they are not asked
     notes : what the user should know of the cache, a sentence each
     sizes : representative element sizes of the 3D reference's meshes, mm
+    chart : error against cost of every configuration; None where none was made
     """
 
     case: Case
@@ -94,6 +96,7 @@ class CaseRun:
     peers: tuple[PeerRun, ...] = ()
     notes: tuple[str, ...] = ()
     sizes: tuple[float, ...] = ()
+    chart: Chart | None = None
 
 
 @dataclass(frozen=True)

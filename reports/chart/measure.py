@@ -7,8 +7,8 @@ in turn, several times each; the 3D reference's meshes and the peers' own come f
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass, field, replace
 from functools import partial
 from importlib.metadata import PackageNotFoundError, version
 from typing import cast
@@ -33,10 +33,10 @@ from reports.chart.points import (
     references_of,
 )
 from reports.code_version import code_version
-from reports.peers import Answer, stations_of
+from reports.peers import NOT_ASKED, PEERS, Answer, stations_of
 from reports.processes import ProcessFailed, Progress, failure_reason, in_own_process
 from reports.quantities import evaluate
-from reports.runner import CaseRun, extrapolation
+from reports.runner import CaseRun, Failure, extrapolation
 from reports.solution import Array
 
 LEVELS = (1, 2, 3, 4, 5, 6, 7, 8)
@@ -51,6 +51,10 @@ ENOUGH, ENOUGH_NGSOLVE = 8.0, 5.0
 
 # What a run of a configuration says: outcome, unknowns, values.
 Told = tuple[str, int, Values]
+
+
+class NoReference(Exception):
+    """The 3D reference cannot treat the case, so that there is nothing to hold errors against."""
 
 
 @dataclass(frozen=True)
@@ -93,12 +97,12 @@ def make_chart(run: CaseRun, progress: Progress = lambda _: None, cache: Cache |
 
     Raises
     ------
-    ValueError
+    NoReference
         if the 3D reference cannot treat the case, so that there is nothing to hold errors against.
     """
     case = run.case
     if not run.references:
-        raise ValueError(f"there is no 3D reference to hold errors against: {run.refusal}")
+        raise NoReference(f"there is no 3D reference to hold errors against. {run.refusal}")
     references = references_of(
         case.scene, [answer.quantities for answer in run.references], extrapolation(case.scene, run.sizes)
     )
@@ -116,6 +120,28 @@ def make_chart(run: CaseRun, progress: Progress = lambda _: None, cache: Cache |
             cache.keep("chart", question, measured)
     points, from_run = _of_the_run(run)
     return Chart(case.title, (*measured.points, *points), references, (*notes, *measured.notes, *from_run))
+
+
+def charted(
+    runs: Iterable[CaseRun | Failure], progress: Callable[[Case], None], cache: Cache | None
+) -> list[CaseRun | Failure]:
+    """The runs with their charts; where one cannot be made, it is empty and says why.
+
+    progress : told whose chart begins
+    """
+    found: list[CaseRun | Failure] = []
+    for run in runs:
+        if isinstance(run, Failure):
+            found.append(run)
+            continue
+        progress(run.case)
+        try:
+            chart = make_chart(run, cache=cache)
+        except Exception as error:  # noqa: BLE001 (whatever is wrong with a chart, the case has its answers)
+            reason = str(error) if isinstance(error, NoReference) else failure_reason(error)
+            chart = Chart(run.case.title, (), {}, (f"There is no chart: {reason}",))
+        found.append(replace(run, chart=chart))
+    return found
 
 
 def _question(run: CaseRun) -> tuple[object, ...]:
@@ -262,6 +288,8 @@ def _of_the_run(run: CaseRun) -> tuple[list[Point], list[str]]:
         points.append(Point(SOLID, label, found.outcome, found.unknowns, (seconds,), "wall", values))
     days = {answer.kept_since for answer in run.references if answer.kept_since}
     notes += [f"Seconds of 3D were measured on {day}." for day in sorted(days)]
+    if not run.peers:
+        notes.append(f"{' and '.join(PEERS)} on their own meshes: {NOT_ASKED}.")
     for peer in run.peers:
         if peer.answer is None:
             notes.append(f"{peer.peer} is left out: {peer.reason.rstrip('.')}.")
