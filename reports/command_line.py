@@ -210,14 +210,19 @@ def sweep(
 
     Parameters
     ----------
-    case : name of a case of the library, or path of a case file
-    vary : KEY=FIRST..LAST UNIT:COUNT, such as rods.upper.E=20..200GPa:30 or "loads.1.force.2=-2..-0.1 kN:20"; with :log
-        at the end the values have even ratios. The key is a path into the case file, entries of lists by their number
-        from 1; rods.NAME.KEY may also be a key of the rod's material (E, nu, rho for short) or section, changed for
-        this rod alone. Given again for another key: all combinations.
-    level : k of the rod model h_k, 1 to 12; the case file's where it is not given
-    order : order p of the rod model along the rods, 2 to 20; the case file's where it is not given
-    output : folder for the files, which are named after the case
+    case
+        name of a case of the library, or path of a case file
+    vary
+        KEY=FIRST..LAST UNIT:COUNT, such as rods.upper.E=20..200GPa:30 or "loads.1.force.2=-2..-0.1 kN:20"; with :log at
+        the end the values have even ratios. The key is a path into the case file, entries of lists by their number from
+        1; rods.NAME.KEY may also be a key of the rod's material (E, nu, rho for short) or section, changed for this rod
+        alone. Given again for another key, all combinations are solved
+    level
+        k of the rod model h_k, 1 to 12; the case file's where it is not given
+    order
+        order p of the rod model along the rods, 2 to 20; the case file's where it is not given
+    output
+        folder for the files, which are named after the case
     """
     from reports.sweep.keys import SweepError, sweep_points, variation
 

@@ -56,7 +56,7 @@ def deflection_figure(run: CaseRun, truth: IndependentValues | None) -> go.Figur
         if rows == 2:
             figure.update_yaxes(title_text="difference, µm", row=2, col=column)
         figure.update_xaxes(title_text=f"{axis}, mm", row=rows, col=column)
-    return _styled(figure, 460)
+    return styled(figure, 460)
 
 
 def pressure_figure(run: CaseRun, pair: str, truth: IndependentValues | None) -> go.Figure:
@@ -98,7 +98,7 @@ def pressure_figure(run: CaseRun, pair: str, truth: IndependentValues | None) ->
         figure.update_xaxes(range=[min(edges) - margin, max(edges) + margin])
     figure.update_yaxes(rangemode="tozero")
     figure.update_yaxes(title_text="p<sub>n</sub>, MPa", row=1, col=1)
-    return _styled(figure, 360)
+    return styled(figure, 360)
 
 
 def moment_figure(run: CaseRun) -> go.Figure:
@@ -122,7 +122,7 @@ def moment_figure(run: CaseRun) -> go.Figure:
         figure.update_xaxes(title_text=f"{axis}, mm", row=2, col=column)
         margin = 0.03 * rod.length
         figure.update_xaxes(range=[x.min() - margin, x.max() + margin], col=column)
-    return _styled(figure, 460)
+    return styled(figure, 460)
 
 
 def _answers(run: CaseRun) -> list[tuple[str, Run]]:
@@ -209,7 +209,8 @@ def _rounded(values: Array) -> list[float]:
     return [float(f"{value:.7g}") for value in values]
 
 
-def _styled(figure: go.Figure, height: int) -> go.Figure:
+def styled(figure: go.Figure, height: int) -> go.Figure:
+    """The figure in the pages' look."""
     figure.update_layout(
         template="none",
         height=height,

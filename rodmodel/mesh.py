@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -56,6 +56,11 @@ def rod_mesh(rod: Rod, level: int | Sequence[int], order: int | Sequence[int]) -
             raise ValueError(f"{name}: found {given}; whole numbers of at least {least} are needed")
         numbers.append(each.astype(np.int64))
     return RodMesh(np.array(rod.element_borders), *numbers)
+
+
+def lowest(meshes: Mapping[str, RodMesh]) -> dict[str, RodMesh]:
+    """The meshes of all rods at level 1."""
+    return {name: replace(mesh, levels=np.ones_like(mesh.levels)) for name, mesh in meshes.items()}
 
 
 def split(mesh: RodMesh, stations: Array) -> RodMesh:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,13 +17,13 @@ from rodmodel.contact import ContactForces, unilateral_contact
 from rodmodel.edge_pressure import held_points
 from rodmodel.edges import EDGE_TOLERANCE, EdgeSearch, find_edges
 from rodmodel.loose import loose_rods
-from rodmodel.mesh import RodMesh
+from rodmodel.mesh import RodMesh, lowest
 from rodmodel.shape import extents
 from rodmodel.solution import Cost, Solution
 from rodmodel.soundness import lost_accuracy
 from rodmodel.stretches import Stretch, moved, moving_edges, same_topology, stretches_in_contact
 from rodmodel.symmetry import scene_mirrors
-from rodmodel.system import ContactSystem, RodState, contact_system
+from rodmodel.system import ContactSystem, contact_system
 
 Array = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
@@ -60,18 +61,36 @@ def solve(scene: Scene, level: Grades = 5, order: Grades = 6, multipliers: bool 
         if a level is below 1 or an order below 2, or there is not one for each element.
     """
     begin = time.perf_counter()
+    system_on = systems(scene, ElementStore(), multipliers)
+    natural = {rod.name: natural_mesh(scene, rod, grades_of(level, rod), grades_of(order, rod)) for rod in scene.rods}
+    # Where contact is shows at the lowest level already.
+    system = system_on(lowest(natural))
+    ready = time.perf_counter()
+    return checked(solution_of(scene, moved_contact(scene, natural, system, system_on), begin, ready))
+
+
+def systems(scene: Scene, store: ElementStore, multipliers: bool = True) -> SystemOn:
+    """What makes the scene's contact system on given meshes; elements are taken from the store and added to it.
+
+    Raises
+    ------
+    SceneError
+        if supports, joints and beds leave a rod loose that no contact could hold.
+    """
     mirrors = scene_mirrors(scene)
     loose = loose_rods(scene, mirrors)
-    store = ElementStore()
 
     def system_on(meshes: dict[str, RodMesh]) -> ContactSystem:
         return contact_system(scene, mirrors, meshes, store, loose, multipliers)
 
-    natural = {rod.name: natural_mesh(scene, rod, _grades_of(level, rod), _grades_of(order, rod)) for rod in scene.rods}
-    # Where contact is shows at the lowest level already.
-    system = system_on({name: replace(mesh, levels=np.ones_like(mesh.levels)) for name, mesh in natural.items()})
-    ready = time.perf_counter()
-    contact = moved_contact(scene, natural, system, system_on)
+    return system_on
+
+
+def solution_of(scene: Scene, contact: MovedContact, begin: float, ready: float) -> Solution:
+    """The rods under the contact forces found; round-off is left to `checked`.
+
+    begin, ready : `time.perf_counter()` of when work began and was ready to look for contact
+    """
     forces = contact.forces
     states = contact.system.states(forces.force, forces.motion)
     energy = sum(
@@ -81,7 +100,7 @@ def solve(scene: Scene, level: Grades = 5, order: Grades = 6, multipliers: bool 
     cost = Cost(unknowns, ready - begin, time.perf_counter() - ready)
     return Solution(
         scene,
-        _judged(contact, states, energy),
+        _judged(contact, energy),
         contact.solutions,
         contact.active_sets,
         contact.stretches,
@@ -94,8 +113,16 @@ def solve(scene: Scene, level: Grades = 5, order: Grades = 6, multipliers: bool 
     )
 
 
-def _judged(contact: MovedContact, states: Mapping[str, RodState], stored_energy: float) -> str:
-    """The contact's outcome, unless springs or round-off have falsified the answer."""
+def checked(solution: Solution) -> Solution:
+    """The solution, refused if round-off has falsified it."""
+    begin = time.perf_counter()
+    outcome = _lost_digits(solution) if solution.outcome == "converged" else ""
+    cost = replace(solution.cost, solve_seconds=solution.cost.solve_seconds + time.perf_counter() - begin)
+    return replace(solution, outcome=outcome or solution.outcome, cost=cost)
+
+
+def _judged(contact: MovedContact, stored_energy: float) -> str:
+    """The contact's outcome, unless springs have falsified the answer."""
     problem, forces = contact.system.problem, contact.forces
     if forces.outcome.startswith("refused"):
         names = ", ".join(f"'{name}'" for name in contact.system.moved_by(forces.motion))
@@ -109,15 +136,20 @@ def _judged(contact: MovedContact, states: Mapping[str, RodState], stored_energy
     if not problem.rigid.any() and contact.outcome == "converged" and penetrating > PENALTY_SHARE * stored_energy:
         share = penetrating / stored_energy
         return f"refused: the penalty is too soft, penetration holds {share:.2g} of the strain energy"
-    for name, assembled in contact.system.rods.items():
+    return contact.outcome
+
+
+def _lost_digits(solution: Solution) -> str:
+    """Why round-off refuses the solution; empty where it does not."""
+    for name, assembled in solution.system.rods.items():
         # The look takes it that elements move as rigid bodies without force, which beds do not let them.
-        on_bed = any(bed.rod == name for bed in contact.system.scene.beds)
-        if contact.outcome == "converged" and not on_bed and _may_lose_digits(assembled):
-            lost = lost_accuracy(assembled, states[name].coefficients)
+        on_bed = any(bed.rod == name for bed in solution.scene.beds)
+        if not on_bed and _may_lose_digits(assembled):
+            lost = lost_accuracy(assembled, solution.states[name].coefficients)
             if lost > LARGEST_LOSS:
                 found = f"round-off has taken about {lost:.1g} of the displacement of rod '{name}'"
                 return f"refused: {found}, which is too slender for so many or so short elements"
-    return contact.outcome
+    return ""
 
 
 def _may_lose_digits(assembled: AssembledRod) -> bool:
@@ -130,12 +162,25 @@ def _may_lose_digits(assembled: AssembledRod) -> bool:
     return max(slenderness, assembled.rod.length / float(np.diff(assembled.borders).min())) > ORDINARY
 
 
-def _grades_of(grades: Grades, rod: Rod) -> int | Sequence[int]:
+def grades_of(grades: Grades, rod: Rod) -> int | Sequence[int]:
+    """The levels or orders of a rod, or the one of all rods."""
     if not isinstance(grades, Mapping):
         return grades
     if rod.name not in grades:
         raise ValueError(f"level or order: found none for rod '{rod.name}'; give every rod one for each element")
     return grades[rod.name]
+
+
+class Begin(Protocol):
+    """What scenes nearly the same tell of where contact is."""
+
+    def edges(self, edges: Sequence[Edge], positions: Array) -> tuple[Array, Array | None]:
+        """Where the search for edges that seem to be at `positions` begins, and with which slopes (None: not known)."""
+        ...
+
+    def points(self, held: BoolArray | None) -> BoolArray | None:
+        """Points that may be in contact, where borders on the edges hold these (None: no borders are there)."""
+        ...
 
 
 @dataclass(frozen=True, eq=False)
@@ -147,6 +192,7 @@ class MovedContact:
     outcome : of the last contact solution
     solutions : contact problems solved
     active_sets : sets of points tried in all of them
+    edges, search : those that moved and their search, where it settled
     """
 
     outcome: str
@@ -155,13 +201,23 @@ class MovedContact:
     stretches: tuple[Stretch, ...]
     system: ContactSystem
     forces: ContactForces
+    edges: tuple[Edge, ...] = ()
+    search: EdgeSearch | None = None
+
+
+def unmoved_contact(system: ContactSystem) -> MovedContact:
+    """Contact on the borders as they are: forces are good to some 0.01 %, edges as the contact points show them."""
+    forces = unilateral_contact(system.problem)
+    found = stretches_in_contact(system, forces)
+    return MovedContact(forces.outcome, 1, forces.active_sets, found, system, forces)
 
 
 def moved_contact(
     scene: Scene,
     natural: dict[str, RodMesh],
-    system: ContactSystem,
+    look: ContactSystem | Sequence[Stretch],
     system_on: SystemOn,
+    begin: Begin | None = None,
 ) -> MovedContact:
     """Find the stretches in contact, move borders onto their edges, and solve on those.
 
@@ -169,9 +225,9 @@ def moved_contact(
     that goes on, or the search does not settle, the natural borders stay, with more where contact seems to end: the
     stretches say how far the edges may be from there.
 
-    system : on the natural borders, at any level: its solution tells where to begin
+    look : where to begin: stretches, or a system on the natural borders, at any level, whose solution shows them
     """
-    solutions, active_sets = 1, 0
+    solutions, active_sets = 0, 0
 
     def solve_contact(system: ContactSystem, settled: bool = True, guess: BoolArray | None = None) -> ContactForces:
         nonlocal active_sets
@@ -179,22 +235,26 @@ def moved_contact(
         active_sets += forces.active_sets
         return forces
 
-    forces = solve_contact(system, settled=False)
-    stretches = stretches_in_contact(system, forces)
+    if isinstance(look, ContactSystem):
+        solutions = 1
+        stretches = stretches_in_contact(look, solve_contact(look, settled=False))
+    else:
+        stretches = tuple(look)
     for attempt in range(MOST_TOPOLOGIES):
         edges, positions = moving_edges(scene, stretches)
-        search = _search(scene, natural, stretches, edges, positions, system_on) if edges else None
+        start = begin if attempt == 0 else None
+        search = _search(scene, natural, stretches, edges, positions, system_on, start) if edges else None
         system = system_on(natural) if search is None else search.system
         solutions += 1 if search is None else len(search.steps)
         active_sets += 0 if search is None else len(search.steps)
         guess = None if search is None else held_points(system, moved(stretches, edges, search.positions))
-        forces = solve_contact(system, guess=guess)
+        forces = solve_contact(system, guess=guess if start is None else start.points(guess))
         found = stretches_in_contact(system, forces)
         if search is not None and search.outcome == "converged":
             wanted = moved(stretches, edges, search.positions)
             if same_topology(found, wanted):
                 settled = tuple(replace(stretch, slack=EDGE_TOLERANCE) for stretch in wanted)
-                return MovedContact(forces.outcome, solutions, active_sets, settled, system, forces)
+                return MovedContact(forces.outcome, solutions, active_sets, settled, system, forces, edges, search)
         stretches = found
         stagnated = search is not None and search.outcome == "stagnated"
         if stagnated and attempt == 0:
@@ -224,6 +284,7 @@ def _search(
     edges: Sequence[Edge],
     positions: Array,
     system_on: SystemOn,
+    begin: Begin | None,
 ) -> EdgeSearch:
     """One search with the borders that follow each edge chosen beforehand."""
     plan = border_plan(scene, natural, edges, positions)
@@ -231,4 +292,5 @@ def _search(
     def system_at(at: Array) -> tuple[ContactSystem, dict[str, Rates]]:
         return system_on(placed_meshes(plan, at)), edge_rates(plan, at)
 
-    return find_edges(scene, stretches, edges, positions, system_at)
+    start, jacobian = (positions, None) if begin is None else begin.edges(edges, positions)
+    return find_edges(scene, stretches, edges, start, system_at, jacobian)
