@@ -7,7 +7,7 @@ in turn, several times each; the 3D reference's meshes and the peers' own come f
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
 from importlib.metadata import PackageNotFoundError, version
@@ -17,7 +17,7 @@ from cases.case import Case
 from cases.loader import library_names, load_case
 from reports.cache import Cache
 from reports.case_comparison import evaluation_points
-from reports.chart.beams import THEORIES, NotBeams, solve_beams
+from reports.chart.beams import THEORIES, NotBeams, Theory, solve_beams
 from reports.chart.points import (
     NGSOLVE_BOUNDARY,
     NGSOLVE_TUNED,
@@ -45,9 +45,9 @@ ORDERS: Mapping[str, tuple[int, ...]] = {ROD_OWN: (4, 6), ROD_GRADED: (3, 4)}
 MESHES: Mapping[str, str] = {ROD_OWN: "own elements", ROD_GRADED: "graded"}
 # Points over a contact zone of beams.
 BEAM_POINTS = (6, 21, 61)
-REPEATS = 3
-# Processor seconds after which no further configuration of the rod model is begun, and none is run again.
-ENOUGH, ENOUGH_NGSOLVE = 8.0, 5.0
+MOST_RUNS = 5
+# Processor seconds after which nothing more is begun, s.
+ENOUGH = 9.0
 
 # What a run of a configuration says: outcome, unknowns, values.
 Told = tuple[str, int, Values]
@@ -66,8 +66,13 @@ class Measured:
 
 
 @dataclass
-class _Timed:
-    """A configuration, and its runs so far."""
+class Configuration:
+    """A configuration and its runs so far.
+
+    Attributes
+    ----------
+    run : solves, and returns what evaluates the answer
+    """
 
     method: str
     label: str
@@ -159,42 +164,37 @@ def _ngsolve_version() -> str:
 
 def _measured(case: Case, stations: Mapping[str, Array], notes: list[str]) -> Measured:
     """Everything measured here; what fails is told in `notes`."""
-    found = []
-    for what, work in (("rod model and beams", measure_rods), ("NGSolve", measure_ngsolve)):
-        try:
-            found.append(in_own_process(partial(work, stations=stations), case))
-        except ProcessFailed as error:
-            notes.append(f"{what}: not measured, {error}.")
-    return Measured(tuple(p for one in found for p in one.points), tuple(n for one in found for n in one.notes))
+    try:
+        return in_own_process(partial(measure, stations=stations), case)
+    except ProcessFailed as error:
+        notes.append(f"The rod model, beams and tuned NGSolve are left out: {error}.")
+        return Measured((), ())
 
 
-def measure_rods(case: Case, _progress: Progress, stations: Mapping[str, Array]) -> Measured:
-    """The rod model by level, order and mesh, and beam theory."""
-    del stations
-    notes = []
+def measure(case: Case, _progress: Progress, stations: Mapping[str, Array], enough: float = ENOUGH) -> Measured:
+    """Beams, NGSolve on tuned meshes, and the rod model by level, order and mesh, run in turn.
+
+    Parameters
+    ----------
+    stations : by rod, where deflections are looked for, arc length, mm
+    enough : processor seconds after which nothing more is begun
+    """
+    notes: list[str] = []
     rods = list(_rod_configurations(case))
+    others = [*_beam_configurations(case, notes), *_ngsolve_configurations(case, stations, notes)]
     # what is loaded and computed once a process belongs to none of them
-    rods[0].run()
-    left_out = _run_in_turn(rods, ENOUGH)
+    for first in {each.method: each for each in (*rods, *others)}.values():
+        first.run()
+    left_out = run_in_turn([*others, *rods], enough)
     if left_out:
         notes.append(
             f"{len(left_out)} of {len(rods)} configurations of the rod model were left out, as the others took "
-            f"{ENOUGH:g} s: {', '.join(each.label for each in left_out)}."
+            f"{enough:g} s: {', '.join(each.label for each in left_out)}."
         )
-    beams: list[_Timed] = []
-    try:
-        solve_beams(case.scene, THEORIES[0], 2)
-        beams = list(_beam_configurations(case))
-        _run_in_turn(beams, ENOUGH)
-    except NotBeams as error:
-        notes.append(f"Beam theory is left out: {error}.")
-    except Exception as error:  # noqa: BLE001 (whatever is wrong with beams, the rod model is measured)
-        notes.append(f"Beam theory is left out: {failure_reason(error)}.")
-    points = [each.point() for each in (*rods, *beams) if each.told is not None]
-    return Measured(tuple(points), tuple(notes))
+    return Measured(tuple(each.point() for each in (*rods, *others) if each.told is not None), tuple(notes))
 
 
-def _rod_configurations(case: Case) -> Iterator[_Timed]:
+def _rod_configurations(case: Case) -> Iterator[Configuration]:
     """By level, order and mesh, low levels first, and the case's own where it is none of them."""
     import rodmodel
     from rodmodel.adapt import graded
@@ -218,33 +218,49 @@ def _rod_configurations(case: Case) -> Iterator[_Timed]:
         for method, scene in meshes.items():
             for order in ORDERS[method]:
                 label = f"h{level}, p = {order}, {MESHES[method]}"
-                yield _Timed(method, label, partial(run, scene, level, order))
+                yield Configuration(method, label, partial(run, scene, level, order))
     if settings.level not in LEVELS or settings.order not in ORDERS[ROD_OWN]:
-        yield _Timed(ROD_OWN, "as the case has it", partial(run, case.scene, settings.level, settings.order))
+        yield Configuration(ROD_OWN, "as the case has it", partial(run, case.scene, settings.level, settings.order))
 
 
-def _beam_configurations(case: Case) -> Iterator[_Timed]:
-    def run(theory: object, count: int) -> Callable[[], Told]:
-        answer = solve_beams(case.scene, theory, count)  # type: ignore[arg-type]
+def _beam_configurations(case: Case, notes: list[str]) -> list[Configuration]:
+    """Both theories with more and more points over each zone; none, told in `notes`, where they do not apply."""
+
+    def run(theory: Theory, count: int) -> Callable[[], Told]:
+        answer = solve_beams(case.scene, theory, count)
         return lambda: (answer.outcome, answer.unknowns, beam_values(answer))
 
-    for theory in THEORIES:
-        for count in BEAM_POINTS if case.scene.contacts else BEAM_POINTS[:1]:
-            label = f"{count} points over each zone" if case.scene.contacts else "elements exact at their nodes"
-            yield _Timed(f"{theory} beams", label, partial(run, theory, count))
+    try:
+        solve_beams(case.scene, THEORIES[0], BEAM_POINTS[0])
+    except NotBeams as error:
+        notes.append(f"Beam theory is left out: {error}.")
+        return []
+    except Exception as error:  # noqa: BLE001 (whatever is wrong with beams, the rod model is measured)
+        notes.append(f"Beam theory is left out: {failure_reason(error)}.")
+        return []
+    # without contact there are no points
+    counts = BEAM_POINTS if case.scene.contacts else BEAM_POINTS[:1]
+    label = "{} points over each zone" if case.scene.contacts else "elements exact at their nodes"
+    return [
+        Configuration(f"{theory} beams", label.format(count), partial(run, theory, count))
+        for theory in THEORIES
+        for count in counts
+    ]
 
 
-def measure_ngsolve(case: Case, _progress: Progress, stations: Mapping[str, Array]) -> Measured:
-    """NGSolve on its tuned meshes, with contact condensed by hand and with its own `ContactBoundary`."""
+def _ngsolve_configurations(case: Case, stations: Mapping[str, Array], notes: list[str]) -> list[Configuration]:
+    """NGSolve on meshes tuned to the case, with contact condensed by hand and with its own `ContactBoundary`."""
     from reference3d.peers.ngsolve_boundary import solve_with_contact_boundary
     from reference3d.peers.ngsolve_solver import Solved, answer, installed, solve_condensed
     from reference3d.peers.ngsolve_tuned import TUNED
 
     tuned = {tolerance: mesh for (name, tolerance), mesh in TUNED.items() if name == case.name}
+    # a case file elsewhere may have the name of one of the library
     if not tuned or case.name not in library_names() or load_case(case.name).scene != case.scene:
-        return Measured((), ())
+        return []
     if absent := installed():
-        return Measured((), (absent,))
+        notes.append(f"{NGSOLVE_TUNED} is left out: {absent}")
+        return []
 
     def run(solve: Callable[..., Solved], tolerance: float) -> Callable[[], Told]:
         solved = solve(case.scene, tuned[tolerance])
@@ -255,23 +271,24 @@ def measure_ngsolve(case: Case, _progress: Progress, stations: Mapping[str, Arra
 
         return tell
 
-    configurations = [
-        _Timed(method, f"mesh tuned to {tolerance:g} %", partial(run, solve, tolerance))
+    return [
+        Configuration(method, f"mesh tuned to {tolerance:g} %", partial(run, solve, tolerance))
         for method, solve in ((NGSOLVE_TUNED, solve_condensed), (NGSOLVE_BOUNDARY, solve_with_contact_boundary))
         for tolerance in tuned
     ]
-    configurations[0].run()
-    left_out = _run_in_turn(configurations, ENOUGH_NGSOLVE)
-    notes = [f"NGSolve: {each.method}, {each.label}, was left out, as it takes long." for each in left_out]
-    return Measured(tuple(each.point() for each in configurations if each.told is not None), tuple(notes))
 
 
-def _run_in_turn(configurations: list[_Timed], enough: float) -> list[_Timed]:
-    """Run all once and again, so that what disturbs the machine disturbs all of them; those there was no time for."""
+def run_in_turn(configurations: Sequence[Configuration], enough: float) -> list[Configuration]:
+    """Run all once and again, so that what disturbs the machine disturbs all alike; those there was no time for.
+
+    enough : processor seconds after which nothing more is begun, not even another turn that would go beyond
+    """
     spent = 0.0
-    for _ in range(REPEATS):
+    for turn in range(MOST_RUNS):
+        if turn and spent * (turn + 1) / turn > enough:
+            break
         for each in configurations:
-            if spent < enough:
+            if turn or spent < enough:
                 each.once()
                 spent += each.seconds[-1]
     return [each for each in configurations if each.told is None]
