@@ -45,6 +45,8 @@ ELEMENTS = 24
 SAME = 1e-9
 # Forces below this part of all of a pair's are round-off.
 NO_FORCE = 1e-9
+# Points that give way by less than this part of what the softest one does are held.
+NO_GIVE = 1e-12
 
 
 class NotBeams(Exception):
@@ -186,12 +188,15 @@ def _pushing(compliance: Array, distance: Array) -> tuple[Array, str]:
     They minimise f C f / 2 + d f, with C = L L' the least squares of L' f + L^-1 d (C. L. Lawson and R. J. Hanson,
     Solving Least Squares Problems, 1974, chapter 23).
     """
+    forces = np.zeros(len(distance))
+    # where clamps hold both, nothing can be pushed apart
+    give = np.diag(compliance) > NO_GIVE * float(np.diag(compliance).max())
     try:
-        factor = cholesky(compliance, lower=True)
-        forces, _ = nnls(factor.T, -solve_triangular(factor, distance, lower=True))
+        factor = cholesky(compliance[np.ix_(give, give)], lower=True)
+        forces[give], _ = nnls(factor.T, -solve_triangular(factor, distance[give], lower=True))
     except (LinAlgError, RuntimeError) as error:
-        return np.zeros(len(distance)), f"refused: {error}"
-    return np.asarray(forces), "converged"
+        return forces, f"refused: {error}"
+    return forces, "converged"
 
 
 def _edges(scene: Scene, plane: _Plane, places: Array, forces: Array) -> tuple[float, ...]:
