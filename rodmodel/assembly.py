@@ -235,6 +235,13 @@ def _as_slice(numbers: IntArray) -> slice | IntArray:
     return slice(start, end) if end - start == len(numbers) else numbers
 
 
+def add_to(matrix: Array, numbers: IntArray, block: Array) -> None:
+    """Add a block to the rows and columns of a matrix with ascending numbers."""
+    if len(numbers):
+        chosen = _as_slice(numbers)
+        matrix[(chosen, chosen) if isinstance(chosen, slice) else np.ix_(chosen, chosen)] += block
+
+
 def functionals(assembled: AssembledRod, parts: Sequence[Part], count: int) -> Functionals:
     """Condense `count` functionals, given by the shares of the elements, and half solve them."""
     chain = assembled.chain

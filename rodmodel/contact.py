@@ -12,7 +12,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import cho_factor, cho_solve, cholesky, solve_triangular
+from scipy.linalg import solve_triangular
+
+from rodmodel.triangular import cholesky, cholesky_solve
 
 Array = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
@@ -94,14 +96,14 @@ class ActiveSet:
         self._compliance = problem.compliance[np.ix_(active, active)]
         sprung = self._compliance.copy()
         sprung[np.diag_indices_from(sprung)] += self._soft
-        self._factor = cho_factor(sprung, lower=True, check_finite=False) if len(sprung) else None
+        self._factor = cholesky(sprung) if len(sprung) else None
         self._opening = problem.motion[active]
         self._by_motion = self._solve(self._opening)
         # Least squares where the points do not hold all motions.
         self._motion_flexibility = np.linalg.pinv(self._opening.T @ self._by_motion, rcond=NO_STIFFNESS, hermitian=True)
 
     def _solve(self, right: Array) -> Array:
-        return right if self._factor is None else cho_solve(self._factor, right, check_finite=False)
+        return right if self._factor is None else cholesky_solve(self._factor, right)
 
     def respond(self, gap: Array, load: Array) -> tuple[Array, Array]:
         """Forces, pulling ones included, and motions that close the given gaps and balance the given load.
@@ -267,7 +269,7 @@ class PushingForces:
         self._matrix = matrix
         self._factor: Array | None = None
         self._active = np.zeros(len(matrix), dtype=bool)
-        self._active_factor: tuple[Array, bool] | None = None
+        self._active_factor: Array | None = None
         self._begun = False
 
     @property
@@ -309,7 +311,7 @@ class PushingForces:
         self.active_sets += 1
         self._active = active
         chosen = self._matrix[np.ix_(active, active)]
-        self._active_factor = cho_factor(chosen, lower=True, check_finite=False) if len(chosen) else None
+        self._active_factor = cholesky(chosen) if len(chosen) else None
 
     def _forces(self, gap: Array) -> tuple[Array, IntArray]:
         """Forces on the chosen set, and the points that are wrong about it, the worst first.
@@ -318,7 +320,7 @@ class PushingForces:
         """
         force = np.zeros_like(gap)
         if self._active_factor is not None:
-            force[self._active] = -cho_solve(self._active_factor, gap[self._active], check_finite=False)
+            force[self._active] = -cholesky_solve(self._active_factor, gap[self._active])
         opening = gap + self._matrix @ force
         pulling = -force / (np.abs(force).max(initial=0.0) or 1.0)
         closing = -opening / (np.abs(gap).max(initial=0.0) or 1.0)
@@ -333,7 +335,7 @@ class PushingForces:
         from scipy.optimize import nnls
 
         if self._factor is None:
-            self._factor = cholesky(self._matrix, lower=True, check_finite=False)
+            self._factor = cholesky(self._matrix)
         try:
             return np.asarray(nnls(self._factor.T, -solve_triangular(self._factor, gap, lower=True))[0])
         except RuntimeError:  # out of iterations: begin with what the given gap closes

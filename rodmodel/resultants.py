@@ -5,6 +5,8 @@ Rows are in the order: along e1, e2, t, then about e1, e2, t.
 
 from __future__ import annotations
 
+from functools import lru_cache
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -45,6 +47,7 @@ def linear_traction(section: Section, fields: Fields) -> Array:
     return work
 
 
+@lru_cache(maxsize=64)
 def rigid_motions(section: Section, fields: Fields) -> Array:
     """Unit translations along, then rotations about e1, e2, t of a section, as its fields, shape (6, n_fields)."""
     x, y, weight = product_quadrature(section, fields.level, STRAIGHT)
@@ -61,4 +64,5 @@ def rigid_motions(section: Section, fields: Fields) -> Array:
     ):
         mine = fields.indices(component)
         motions[motion, mine] = values[mine] @ function
+    motions.setflags(write=False)  # as it is handed out again
     return motions

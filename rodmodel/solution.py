@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
-from functools import partial
+from functools import cached_property, lru_cache, partial
 
 import numpy as np
 from numpy.typing import NDArray
 
-from cases.scene import Rod, Scene
+from cases.scene import Material, Orthotropic, Scene, Section
 from rodmodel.assembly import AssembledRod
 from rodmodel.axial import shape_function_slopes, shape_functions
 from rodmodel.beds import BedForces, bed_forces
@@ -26,6 +26,7 @@ from rodmodel.section import (
     W,
     axial_modulus,
     elasticity_matrix,
+    per_axial_modulus,
     product_quadrature,
     section_values,
     strain_operators,
@@ -127,15 +128,7 @@ class Solution:
         """
         station = np.atleast_1d(np.asarray(station, dtype=float))
         section = self.system.rods[rod].rod.section
-        if has_centre(section):
-            return self.displacement_at(rod, np.array([np.zeros_like(station), np.zeros_like(station), station]))
-
-        def mean(fields: Fields, members: IntArray) -> Array:
-            x, y, weight = section_quadrature(section, fields.level)
-            value = section_values(section, fields, x, y) @ weight / weight.sum()
-            return np.repeat(value[:, None], len(members), axis=1)
-
-        return self._displacement(rod, station, mean)
+        return self._displacement(rod, station, lambda fields, _: _mean_values(section, fields)[:, None])
 
     def displacement_at(self, rod: str, points: Array) -> Array:
         """Displacement at points (x, y, s) of a rod, global components, mm; shape (3, n) to (3, n)."""
@@ -180,7 +173,10 @@ class Solution:
         result = np.empty((6, len(station)))
         for fields, members, psi, slope in self._axial(assembled, station):
             turning = turning_at(assembled.rod.centre_line, station[members])
-            sums = by_turning(turning, partial(_resultant_operators, assembled.rod, fields))
+            of_rod = partial(
+                _resultant_operators, assembled.rod.section, per_axial_modulus(assembled.rod.material), fields
+            )
+            sums = axial_modulus(assembled.rod.material) * by_turning(turning, of_rod)
             result[:, members] = np.einsum("nrf,fn->rn", sums, np.concatenate([psi, slope]))
         return result
 
@@ -223,6 +219,15 @@ class Solution:
 
     def contact_points(self, pair: str) -> ContactPoints:
         """State of every contact point of the pair, mirrored where symmetry carried one half."""
+        if pair not in self._contact_points:
+            self._contact_points[pair] = self._points_of(pair)
+        return self._contact_points[pair]
+
+    @cached_property
+    def _contact_points(self) -> dict[str, ContactPoints]:
+        return {}
+
+    def _points_of(self, pair: str) -> ContactPoints:
         contact, grid = self.scene.contact(pair), self.system.grids[pair]
         points = self.system.points[pair]
         force = self.force[points]
@@ -282,13 +287,23 @@ class Solution:
             yield fields, members, psi, slope
 
 
-def _resultant_operators(rod: Rod, fields: Fields, turning: Darboux) -> Array:
+@lru_cache(maxsize=64)
+def _mean_values(section: Section, fields: Fields) -> Array:
+    """Value of every field at x = y = 0, or where there is no material its mean over the section, shape (n_fields,)."""
+    if has_centre(section):
+        return section_values(section, fields, np.zeros(1), np.zeros(1))[:, 0]
+    x, y, weight = section_quadrature(section, fields.level)
+    return np.asarray(section_values(section, fields, x, y) @ weight / weight.sum())
+
+
+@lru_cache(maxsize=64)
+def _resultant_operators(section: Section, material: Material | Orthotropic, fields: Fields, turning: Darboux) -> Array:
     """What psi and then psi' of every field add to N, Q1, Q2, M1, M2, T, shape (6, 2 n_fields)."""
-    x, y, weight = product_quadrature(rod.section, fields.level, turning)
-    b0, b1, _ = strain_operators(rod.section, fields, x, y, turning)
+    x, y, weight = product_quadrature(section, fields.level, turning)
+    b0, b1, _ = strain_operators(section, fields, x, y, turning)
     # What each stress component at a point adds to each resultant; components xx, yy, xy add nothing.
     lever = np.zeros((6, 6, len(x)))
     lever[0, 2], lever[1, 4], lever[2, 3] = 1.0, 1.0, 1.0
     lever[3, 2], lever[4, 2], lever[5, 3], lever[5, 4] = y, -x, x, -y
-    sums = np.einsum("rcp,cd,p->rpd", lever, elasticity_matrix(rod.material, fields.level), weight).reshape(6, -1)
+    sums = np.einsum("rcp,cd,p->rpd", lever, elasticity_matrix(material, fields.level), weight).reshape(6, -1)
     return np.concatenate([sums @ b0.reshape(-1, fields.count), sums @ b1.reshape(-1, fields.count)], axis=1)

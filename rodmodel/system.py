@@ -15,6 +15,7 @@ from rodmodel.assembly import (
     Functionals,
     Mirrors,
     Part,
+    add_to,
     added,
     assembled_rod,
     coefficients,
@@ -178,7 +179,7 @@ def joined_system(
     on_joints = np.zeros((0 if joints is None else len(joints.free), count + 1))
     for name, assembled in rods.items():
         place, response = places[name], responses[name]
-        matrix[np.ix_(place, place)] += response[:-1, :-1]
+        add_to(matrix, place, response[:-1, :-1])
         gap[place] += response[:-1, -1] + on_given(assembled, found[name])[:-1]
         if joints is not None and name in joints.rods:
             on_joints[:, [*place, -1]] += joints.rods[name].on_joints(found[name])

@@ -8,7 +8,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg.blas import dtrsm
-from scipy.linalg.lapack import dpotrf
+from scipy.linalg.lapack import dpotrf, dpotrs
 
 Array = NDArray[np.float64]
 
@@ -36,3 +36,8 @@ def lower_solve(factor: Array, right: Array) -> Array:
 def transposed_solve(factor: Array, right: Array) -> Array:
     """L^-T right, shape (n, m)."""
     return np.asarray(dtrsm(1.0, factor.T, right.T, side=1, lower=0, trans_a=1).T)
+
+
+def cholesky_solve(factor: Array, right: Array) -> Array:
+    """(L L^T)^-1 right, shape (n,) or (n, m)."""
+    return np.asarray(dpotrs(factor.T, right, lower=0)[0]).reshape(right.shape)
