@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from itertools import combinations
 
 import numpy as np
 from numpy.typing import NDArray
@@ -137,10 +136,7 @@ def border_plan(
         if len(movable) < len(wanted):
             mesh = split(mesh, wanted)
             movable = [int(np.abs(mesh.borders - station).argmin()) for station in wanted]
-        chosen = min(
-            combinations(movable, len(wanted)),
-            key=lambda indices: float(np.abs(mesh.borders[list(indices)] - wanted).sum()),
-        )
+        chosen = [movable[index] for index in nearest(mesh.borders[movable], wanted)]
         is_held = [int(np.abs(mesh.borders - station).argmin()) for station in held]
         followed = {**dict.fromkeys(is_held), **dict(zip(chosen, numbers, strict=True))}
         anchors = tuple(sorted(followed))
@@ -150,6 +146,23 @@ def border_plan(
                 places[index], rates[index, number] = lines[number]
         plan[rod.name] = RodBorders(mesh, anchors, places, rates)
     return plan
+
+
+def nearest(places: Array, wanted: Array) -> list[int]:
+    """Which of ascending places lie nearest to ascending wanted ones, one each and in their order.
+
+    The least sum of distances, by dynamic programming: column j of `sums` holds that of the wanted ones up to j, the
+    last of them at a place.
+    """
+    sums = np.abs(places[:, None] - wanted)
+    for column in range(1, len(wanted)):
+        before = np.minimum.accumulate(sums[:, column - 1])
+        sums[1:, column] += before[:-1]
+        sums[0, column] = np.inf
+    chosen: list[int] = []
+    for column in reversed(range(len(wanted))):
+        chosen.append(int(sums[: chosen[-1] if chosen else None, column].argmin()))
+    return chosen[::-1]
 
 
 def _edge_lines(scene: Scene, rod: Rod, edges: Sequence[Edge]) -> dict[int, tuple[float, float]]:

@@ -1,13 +1,16 @@
 """Element borders that follow the edges of contact."""
 
 from dataclasses import replace
+from itertools import combinations
 
 import numpy as np
 import pytest
+from hypothesis import assume, given
+from hypothesis import strategies as st
 
 from cases.loader import load_case
 from cases.scene import Scene, SectionForce
-from rodmodel.borders import Edge, border_plan, edge_rates, natural_mesh, placed_meshes
+from rodmodel.borders import Edge, border_plan, edge_rates, natural_mesh, nearest, placed_meshes
 
 
 @pytest.fixture
@@ -23,6 +26,22 @@ def placed(scene: Scene, edges: list[Edge], positions: list[float]) -> dict[str,
 
 
 BOTH = [Edge("overlap", 0, -1), Edge("overlap", 0, 1)]
+
+
+@given(places=st.lists(st.floats(201.0, 299.0), min_size=1, max_size=7, unique=True), data=st.data())
+def test_edges_take_the_borders_that_move_least_in_all(places: list[float], data: st.DataObject) -> None:
+    """Of all choices of as many borders in their order."""
+    least_apart = 1e-3
+    borders = np.sort(places)
+    assume(np.diff(borders).min(initial=1.0) > least_apart)
+    count = data.draw(st.integers(1, len(places)))
+    edges = np.sort(data.draw(st.lists(st.floats(200.0, 300.0), min_size=count, max_size=count)))
+
+    chosen = borders[nearest(borders, edges)]
+
+    moved = min(float(np.abs(np.array(some) - edges).sum()) for some in combinations(borders, count))
+    assert (np.diff(chosen) > 0.0).all()
+    assert np.abs(chosen - edges).sum() == pytest.approx(moved, abs=1e-9)
 
 
 def test_two_edges_take_the_two_inner_borders_of_both_rods(scene: Scene) -> None:
