@@ -37,11 +37,13 @@ from cases.scene import (
     Spline,
     Support,
 )
+from rodmodel.adaptive import AdaptiveSolution, Estimate, solve_to
 from rodmodel.section_properties import SectionProperties, section_properties
 from rodmodel.solution import ContactPoints, Cost, Solution
 from rodmodel.solver import solve
 
 __all__ = [
+    "AdaptiveSolution",
     "Bed",
     "Box",
     "Circle",
@@ -49,6 +51,7 @@ __all__ = [
     "ContactPair",
     "ContactPoints",
     "Cost",
+    "Estimate",
     "GapTable",
     "Gravity",
     "Ground",
@@ -77,4 +80,5 @@ __all__ = [
     "Support",
     "section_properties",
     "solve",
+    "solve_to",
 ]

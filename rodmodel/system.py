@@ -40,10 +40,12 @@ from rodmodel.pairing import (
     face_axes,
     facing_points,
     is_even,
+    on_second,
     opposite_stations,
     shared_borders,
 )
 from rodmodel.section import Fields, section_values
+from rodmodel.stiffness import Element
 
 # Springs of multipliers are at least this part as stiff in a short interval as in the longest.
 SHORT = 0.3
@@ -180,7 +182,9 @@ def joined_system(
     for name, assembled in rods.items():
         place, response = places[name], responses[name]
         add_to(matrix, place, response[:-1, :-1])
-        gap[place] += response[:-1, -1] + on_given(assembled, found[name])[:-1]
+        gap[place] += response[:-1, -1]
+        if given_displacement(assembled):
+            gap[place] += on_given(assembled, found[name])[:-1]
         if joints is not None and name in joints.rods:
             on_joints[:, [*place, -1]] += joints.rods[name].on_joints(found[name])
     free = np.zeros((0, count + 1))
@@ -263,11 +267,23 @@ def _grid(
     all_borders = np.concatenate([ends[:1], inside, ends[-1:]])
     all_borders = all_borders[np.concatenate([[True], np.diff(all_borders) > SAME_BORDER])]
     intervals = np.column_stack([all_borders[:-1], all_borders[1:]])
-    n_across = max(rod.level for rod in involved) + 2
+    # What an element beyond the zone carries needs no points here.
+    touching = _elements_on(involved[0], ends)
+    if len(involved) == 2:
+        on_other = on_second(scene, pair, ends) if is_even(scene, pair) else involved[1].borders
+        touching += _elements_on(involved[1], on_other)
+    n_across = max(element.fields.level for element in touching) + 2
     across_is_x = face_axes(involved[0].rod, pair.first.face).axis == 1
     symmetric = mirrors[pair.first.rod][0 if across_is_x else 1]
-    n_along = max(rod.order for rod in involved) + 2
+    n_along = max(element.order for element in touching) + 2
     return contact_grid(scene, pair, intervals, (n_along, n_across + 1 - n_across % 2), symmetric)
+
+
+def _elements_on(assembled: AssembledRod, stations: Array) -> list[Element]:
+    """Elements that share more than a border with the part of the rod between the first and last of its stations."""
+    left, right = assembled.borders[:-1], assembled.borders[1:]
+    inside = (left < stations.max() - SAME_BORDER) & (right > stations.min() + SAME_BORDER)
+    return [assembled.elements[index] for index in np.flatnonzero(inside)]
 
 
 def _gap_parts(

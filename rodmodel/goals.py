@@ -1,0 +1,80 @@
+"""The few numbers that a solution is wanted for: contact forces, largest deflections, clamp moments, contact edges."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cases.scene import Clamp, Scene, station_of
+from rodmodel.solution import Solution
+
+Array = NDArray[np.float64]
+
+# Even steps along a rod at which its deflection is looked at; a parabola finds the largest in between.
+STEPS = 32
+
+
+@dataclass(frozen=True)
+class Goal:
+    """A number that a solution is wanted for.
+
+    Attributes
+    ----------
+    kind : resultant of a pair's contact pressure (N); largest displacement of a rod's centre line (mm); largest bending
+        moment that a clamp exerts on a rod (N mm); end of a stretch in contact (mm along the pair's first rod)
+    of : name of the pair or rod
+    number : of the edge, from 0 at the zone's start
+    """
+
+    kind: Literal["contact force", "deflection", "clamp moment", "contact edge"]
+    of: str
+    number: int = 0
+
+    @property
+    def unit(self) -> str:
+        """Of its value."""
+        return {"contact force": "N", "clamp moment": "N mm"}.get(self.kind, "mm")
+
+
+def goals(solution: Solution) -> Mapping[Goal, float]:
+    """The values of all goals of a solution."""
+    scene = solution.scene
+    found: dict[Goal, float] = {}
+    for pair in scene.contacts:
+        points = solution.contact_points(pair.name)
+        found[Goal("contact force", pair.name)] = float(np.linalg.norm(points.normal @ points.force))
+    for rod in scene.rods:
+        moved = solution.displacement(rod.name, np.linspace(0.0, rod.length, 1 + STEPS))
+        found[Goal("deflection", rod.name)] = _peak(np.linalg.norm(moved, axis=0))
+        moments = clamp_moments(solution, scene, rod.name)
+        if moments:
+            found[Goal("clamp moment", rod.name)] = max(moments)
+    for pair in scene.contacts:
+        ends = [at for each in solution.stretches if each.pair == pair.name for at in (each.start, each.end)]
+        found |= {Goal("contact edge", pair.name, number): end for number, end in enumerate(ends)}
+    return found
+
+
+def clamp_moments(solution: Solution, scene: Scene, rod: str) -> list[float]:
+    """Magnitudes of the bending moments that the rod's clamps exert on it, N mm."""
+    found = []
+    for support in scene.supports:
+        if isinstance(support, Clamp) and support.rod == rod:
+            station = station_of(support, scene.rod(rod))
+            axes = solution.frame(rod, np.array([station]))[1][0]
+            found.append(float(np.linalg.norm(axes[:2] @ solution.reaction(rod, station)[3:])))
+    return found
+
+
+def _peak(values: Array) -> float:
+    """Largest of values at even steps, by the parabola through the largest and its neighbours."""
+    top = int(values.argmax())
+    if top in (0, len(values) - 1):
+        return float(values[top])
+    before, at, after = values[top - 1 : top + 2]
+    bend = before - 2.0 * at + after
+    return float(at - 0.125 * (after - before) ** 2 / bend) if bend < 0.0 else float(at)
