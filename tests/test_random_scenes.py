@@ -57,7 +57,7 @@ def checked_outcome(seed: int) -> str:
         if not isinstance(pair.second, Ground) or pair.second.modulus is None:
             assert points.gap.min(initial=0.0) >= -PENETRATION * moved - 1e-6, (seed, pair.name)
     quantities = evaluate(solution)
-    # Forces that cancel are large where a stiff rod is carried far by a soft one (some bend by metres under these loads)
+    # Forces that cancel are large where a stiff rod is carried far by a soft one (some bend by metres under such loads)
     # and in elements between borders that edges of contact have brought close together.
     reactions = max((float(np.abs(each[:3]).max()) for each in quantities.reactions.values()), default=0.0)
     cancelling = max(axial_stiffness(solution, rod) * moved for rod in scene.rods)
