@@ -16,7 +16,7 @@ from typing import Literal
 import numpy as np
 
 from reports.comparison import CURVES
-from reports.formatting import number
+from reports.formatting import NOTHING
 from reports.nightly.rows import BESIDE, FAILED, RUN, Row
 
 # So many runs on one machine are needed to know the noise of a time, and so many of the last ones tell it.
@@ -114,20 +114,25 @@ def _values(tonight: Iterable[Row], before: dict[tuple[str, ...], list[Row]]) ->
             if _moved(anchor, later):
                 anchor = later
         if _moved(anchor, row):
-            what = "difference " if row.quantity in CURVES else ""
-            text = f"{what}from {_shown(anchor)} to {_shown(row)}, more than {number(_allowed(anchor, row), 2)}"
-            unit = "" if row.quantity in CURVES and row.relative else row.unit
-            found.setdefault((row.case, named(row)), Drift(row.case, "value", named(row), f"{text} {unit}".strip()))
+            what = "difference " if _by_difference(row) else ""
+            limit = _words(row, [_allowed(anchor, row)], 2)
+            text = f"{what}from {_words(anchor, _measured(anchor))} to {_words(row, _measured(row))}, more than {limit}"
+            found.setdefault((row.case, named(row)), Drift(row.case, "value", named(row), text))
     return list(found.values())
 
 
-def _measured(row: Row) -> tuple[float, ...]:
-    """The numbers of a row that may move.
+def _by_difference(row: Row) -> bool:
+    """Whether the difference is what may move, not the value.
 
     Of a curve, a row has the two values where they are farthest apart: the place moves for no reason, their distance
     does not.
     """
-    if row.quantity in CURVES and row.against != BESIDE:
+    return row.quantity in CURVES and row.against != BESIDE
+
+
+def _measured(row: Row) -> tuple[float, ...]:
+    """The numbers of a row that may move."""
+    if _by_difference(row):
         return () if row.difference is None else (row.difference,)
     return row.value
 
@@ -138,8 +143,7 @@ def _allowed(*rows: Row) -> float:
 
 
 def _uncertainty(row: Row) -> float:
-    curve = row.quantity in CURVES and row.against != BESIDE
-    scale = max(map(abs, row.reference), default=0.0) if row.relative and not curve else 1.0
+    scale = max(map(abs, row.reference), default=0.0) if row.relative and not _by_difference(row) else 1.0
     if row.uncertainty:
         return row.uncertainty * scale
     if row.tolerance and scale:
@@ -154,8 +158,11 @@ def _moved(first: Row, second: Row) -> bool:
     return not np.allclose(one, other, rtol=0.0, atol=_allowed(first, second), equal_nan=True)
 
 
-def _shown(row: Row) -> str:
-    return ", ".join(number(value, 6) for value in _measured(row)) or "none"
+def _words(row: Row, numbers: Sequence[float], digits: int = 6) -> str:
+    """Numbers that may move, or by which, with their unit."""
+    if _by_difference(row) and row.relative:
+        return ", ".join(f"{100.0 * value:.{digits}g}" for value in numbers) + " %" if numbers else NOTHING
+    return ", ".join(f"{value:.{digits}g}" for value in numbers) + f" {row.unit}" if numbers else NOTHING
 
 
 def _costs(tonight: Iterable[Row], earlier: Iterable[Row]) -> list[Drift]:
@@ -177,7 +184,7 @@ def _costs(tonight: Iterable[Row], earlier: Iterable[Row]) -> list[Drift]:
             limit = max(DEVIATIONS * noise, share * median, least)
             if not math.isclose(value, median, rel_tol=0.0, abs_tol=limit):
                 unit = COST_UNITS[kind]
-                text = f"from {number(median, 3)} to {number(value, 3)} {unit}, beyond a noise of {number(limit, 2)}"
+                text = f"from {median:.3g} to {value:.3g} {unit}, beyond a noise of {limit:.2g}"
                 found.append(Drift(case, kind, f"{solver} {kind}", f"{text} {unit} in {len(last)} runs"))
     return found
 

@@ -12,7 +12,7 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
-from reports.formatting import NOTHING, number, seconds
+from reports.formatting import NOTHING, seconds
 from reports.nightly.drift import named
 from reports.nightly.rows import FAILED, Row
 from reports.tables import STYLES, WIDTH
@@ -64,7 +64,7 @@ def print_history(rows: Sequence[Row]) -> None:
 
 
 def _values(values: Sequence[float], unit: str) -> str:
-    return ", ".join(number(value, 5) for value in values) + f" {unit}" if values else NOTHING
+    return ", ".join(f"{value:.6g}" for value in values) + f" {unit}" if values else NOTHING
 
 
 def _measure(row: Row) -> str:

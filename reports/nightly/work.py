@@ -26,6 +26,8 @@ from reports.runner import CaseRun, Failure
 
 # Seconds between looks at memory and time.
 INTERVAL = 0.2
+# What a case is run by, a module.
+CASE_PROCESS = "reports.nightly.case_process"
 # Of a machine's memory, what its cases may have together.
 SHARE = 0.9
 
@@ -66,7 +68,7 @@ def run_in_process(task: Task, wanted: Callable[[], bool] = lambda: True) -> Cas
     """
     environment = {**dict.fromkeys(THREADS, "1"), **os.environ}
     process = subprocess.Popen(
-        [sys.executable, "-m", "reports.nightly.case_process"],
+        [sys.executable, "-m", CASE_PROCESS],
         stdin=subprocess.PIPE,
         stdout=subprocess.PIPE,
         stderr=subprocess.DEVNULL,
