@@ -18,9 +18,11 @@ from cases.loader import library_names, load_case
 from reports.cache import Cache
 from reports.case_comparison import evaluation_points
 from reports.chart.beams import THEORIES, NotBeams, Theory, solve_beams
+from reports.chart.front import TOLERANCES, asked
 from reports.chart.points import (
     NGSOLVE_BOUNDARY,
     NGSOLVE_TUNED,
+    ROD_AUTO,
     ROD_GRADED,
     ROD_OWN,
     SOLID,
@@ -47,7 +49,7 @@ MESHES: Mapping[str, str] = {ROD_OWN: "own elements", ROD_GRADED: "graded"}
 BEAM_POINTS = (6, 21, 61)
 MOST_RUNS = 5
 # Processor seconds after which nothing more is begun, s.
-ENOUGH = 9.0
+ENOUGH = 10.0
 
 # What a run of a configuration says: outcome, unknowns, values.
 Told = tuple[str, int, Values]
@@ -195,9 +197,10 @@ def measure(case: Case, _progress: Progress, stations: Mapping[str, Array], enou
 
 
 def _rod_configurations(case: Case) -> Iterator[Configuration]:
-    """By level, order and mesh, low levels first, and the case's own where it is none of them."""
+    """Its own choice, then by level, order and mesh, low levels first, and the case's own where it is none of them."""
     import rodmodel
     from rodmodel.adapt import graded
+    from rodmodel.adaptive import solve_to
 
     points = evaluation_points(case)
     settings = case.rod_model
@@ -211,9 +214,20 @@ def _rod_configurations(case: Case) -> Iterator[Configuration]:
 
         return tell
 
+    def choose(tolerance: float) -> Callable[[], Told]:
+        found = solve_to(case.scene, tolerance)
+
+        def tell() -> Told:
+            quantities = evaluate(found.solution, points.stations, points.stress_points)
+            return found.outcome, quantities.unknowns, own_values(case.scene, quantities)
+
+        return tell
+
     meshes = {ROD_OWN: case.scene, ROD_GRADED: graded(case.scene)}
     if meshes[ROD_OWN] == meshes[ROD_GRADED]:
         del meshes[ROD_GRADED]
+    for tolerance in TOLERANCES:
+        yield Configuration(ROD_AUTO, asked(tolerance), partial(choose, tolerance))
     for level in LEVELS:
         for method, scene in meshes.items():
             for order in ORDERS[method]:

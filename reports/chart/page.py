@@ -13,6 +13,7 @@ from reports.chart.figure import chart_figure, key
 from reports.chart.front import COSTS, drawn_points, races
 from reports.chart.points import LENGTHS, TITLES, Chart, Charted
 from reports.chart.wording import (
+    RATIOS,
     alternative,
     caption,
     error_text,
@@ -21,7 +22,6 @@ from reports.chart.wording import (
     raced,
     seconds_text,
     told,
-    tolerances,
     unfinished,
 )
 from reports.html import rendered
@@ -55,7 +55,7 @@ def chart_part(chart: Chart, anchor: str) -> tuple[dict[str, Any], dict[str, go.
         "figures": places,
         "missing": missing,
         "raced": raced(chart),
-        "tolerances": tolerances(),
+        "ratios": RATIOS,
         "headings": [race_heading(race) for race in found],
         "race": race_rows(found),
         "quantities": [TITLES[quantity] for quantity in chart.references],

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 
-from reports.chart.front import COSTS, ROD, TOLERANCES, Race, drawn_points, front, races
+from reports.chart.front import COSTS, ROD, Race, drawn_points, front, races
 from reports.chart.points import LENGTHS, TITLES, Chart, Charted, Point
 
 NONE = "none"
+RATIOS = "x: seconds over those of the rod model that are marked 1 x."
 
 
 def told(point: Point) -> str:
@@ -76,12 +77,15 @@ def race_rows(found: Sequence[Race]) -> list[tuple[str, list[tuple[str, str]]]]:
             if finish.cheapest is None:
                 cells.append((NONE, ""))
                 continue
-            ratio = (
-                "" if finish.ratio is None or finish.runner == ROD else f", {finish.ratio:.3g} times the rod model's"
-            )
+            ratio = "" if finish.ratio is None else f", {_times(finish.ratio)}"
             whose = finish.cheapest.label if finish.runner in (ROD, finish.cheapest.method) else told(finish.cheapest)
             cells.append((whose, f"{seconds_text(finish.cheapest)}{ratio}"))
     return list(rows.items())
+
+
+def _times(ratio: float) -> str:
+    """A ratio with three digits and no exponent."""
+    return f"{float(f'{ratio:.3g}'):,.10g} x".replace(",", " ")
 
 
 def print_race(chart: Chart) -> None:
@@ -102,6 +106,7 @@ def print_race(chart: Chart) -> None:
     for runner, cells in race_rows(found):
         table.add_row(runner, *(escape("\n".join(part for part in cell if part)) for cell in cells))
     console.print(table)
+    console.print(RATIOS)
     for sentence in chart.notes:
         console.print(escape(sentence))
 
@@ -115,16 +120,6 @@ def raced(chart: Chart) -> str:
 def unfinished(chart: Chart) -> list[str]:
     """Configurations that did not converge, and why."""
     return [f"{told(point)}: {point.outcome}" for point in chart.points if point.outcome != "converged"]
-
-
-def tolerances() -> str:
-    """Of all races."""
-    return _joined(f"{100.0 * tolerance:g} %" for tolerance in TOLERANCES)
-
-
-def _joined(parts: Iterable[str]) -> str:
-    *others, last = parts
-    return f"{', '.join(others)} and {last}" if others else last
 
 
 def _silent(chart: Chart, quantity: Charted) -> list[str]:

@@ -7,8 +7,8 @@ from dataclasses import replace
 
 import pytest
 
-from reports.chart.front import COSTS, ROD, front, races
-from reports.chart.points import NGSOLVE_TUNED, SOLID, Chart, Point
+from reports.chart.front import COSTS, ROD, asked, front, races
+from reports.chart.points import NGSOLVE_TUNED, ROD_AUTO, SOLID, Chart, Point
 
 
 def labels(points: tuple[Point, ...]) -> list[str]:
@@ -50,6 +50,25 @@ def test_the_race_is_won_by_the_cheapest_that_keeps_the_tolerance_in_both(chart:
     assert {finish.runner: finish.cheapest.label for finish in coarse.finishes}[ROD] == "h1, p = 3, graded"
     # 0.02 % in force would be kept, but not in deflection
     assert {finish.runner: finish.cheapest for finish in finest.finishes}[NGSOLVE_TUNED] is None
+
+
+def test_an_own_choice_counts_only_for_the_tolerance_it_was_asked_for(
+    chart: Chart, point: Callable[..., Point]
+) -> None:
+    """Who asks for 0.1 % cannot know that asking for 1 % would have been enough, nor is 0.02 % kept by having asked."""
+    chosen = [
+        point(ROD_AUTO, asked(0.01), 0.015, 100.05, 2.001),
+        point(ROD_AUTO, asked(0.001), 0.025, 100.05, 2.001),
+        point(ROD_AUTO, asked(0.0002), 0.035, 100.05, 2.001),
+    ]
+    chart = replace(chart, points=(*chart.points, *chosen))
+
+    own = [next(finish for finish in race.finishes if finish.runner == ROD_AUTO) for race in races(chart)]
+
+    assert [finish.cheapest for finish in own] == [chosen[0], chosen[1], None]
+    # ratios are to it where it finished
+    fixed = {finish.runner: finish.ratio for finish in races(chart)[1].finishes}
+    assert fixed[ROD] == pytest.approx(0.020 / 0.025)
 
 
 def test_a_race_finer_than_the_reference_is_certain_says_so(chart: Chart) -> None:

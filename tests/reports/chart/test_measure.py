@@ -10,7 +10,7 @@ import pytest
 from reports.cache import Cache
 from reports.chart import measure as measure_module
 from reports.chart.measure import Configuration, Measured, charted, make_chart, measure, run_in_turn
-from reports.chart.points import ROD_GRADED, ROD_OWN, SOLID, Point
+from reports.chart.points import ROD_AUTO, ROD_GRADED, ROD_OWN, SOLID, Point
 from reports.runner import CaseRun, Failure
 
 
@@ -73,7 +73,7 @@ def test_all_methods_are_measured_on_a_library_case(case_run: CaseRun, monkeypat
     found = measure(case_run.case, lambda _: None, stations, enough=1.5)
 
     methods = {point.method for point in found.points}
-    assert {ROD_OWN, ROD_GRADED, "Euler-Bernoulli beams", "Timoshenko beams"} <= methods
+    assert {ROD_OWN, ROD_GRADED, ROD_AUTO, "Euler-Bernoulli beams", "Timoshenko beams"} <= methods
     assert all(point.outcome == "converged" and min(point.seconds) > 0.0 for point in found.points)
     forces = {point.values["contact_force", "overlap"][0] for point in found.points}
     # the true one is 322.45 N; the crudest, p = 4 on twelve elements, are 0.3 % off, beams 0.3 %
