@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from reports.solution import Solution
     from reports.stability.registry import Stability
     from reports.verification.check import Outcome
+    from rodmodel import AdaptiveSolution
 
 BAD_INPUT = 2
 NOT_PASSED = 1
@@ -101,8 +102,10 @@ def solve(
     /,
     *,
     model: Literal["rod", "reference"] = "rod",
-    level: Level = None,
+    level: int | Literal["auto", "case"] | None = None,
     order: Order = None,
+    tolerance: str | None = None,
+    picture: Path | None = None,
     mesh: Path | None = None,
     vtu: Path | None = None,
     json: Annotated[bool, Parameter(name="--json", negative=())] = False,
@@ -116,9 +119,15 @@ def solve(
     model
         the rod model, or the 3D reference
     level
-        k of the rod model h_k, 1 to 12; the case file's where it is not given
+        k of the rod model h_k, 1 to 12; case for the case file's; auto, or none of level and order, for levels, orders
+        and elements of the solver's own choice
     order
-        order p of the rod model along the rods, 2 to 20; the case file's where it is not given
+        order p of the rod model along the rods, 2 to 20; the case file's where only the level is given
+    tolerance
+        error that contact forces, largest deflections and clamp moments may have where the solver chooses, such as 0.1%
+        or 0.001; 0.1% where it is not given
+    picture
+        file, ending in .html, for a picture of the levels and orders chosen along the rods
     mesh
         file with a mesh that the 3D reference takes instead of its own, in any format that meshio reads: hexahedra
         of 8, 20 or 27 nodes or tetrahedra of 4 or 10, in groups named after the rods (ROD for its elements, ROD.start
@@ -134,6 +143,16 @@ def solve(
     loaded = load_case(case)
     if model == "reference" and not (level is None and order is None):
         raise InputError("--level and --order belong to the rod model; leave them out with --model reference")
+    if isinstance(level, int) and not 1 <= level <= 12:
+        raise InputError(f"--level: found {level}; give 1 to 12, auto or case")
+    auto = model == "rod" and (level == "auto" or (level is None and order is None))
+    if level == "auto" and order is not None:
+        raise InputError(f"--order: found {order} with --level auto; give a level, or leave the order to the solver")
+    if not auto and not (tolerance is None and picture is None):
+        raise InputError("--tolerance and --picture belong to --level auto; leave them out, or the level and order")
+    wanted = _tolerance(tolerance)
+    if picture is not None and (picture.suffix != ".html" or picture.is_dir() or not picture.parent.is_dir()):
+        raise InputError(f"--picture: found {picture}; give a file whose name ends in .html, in a folder that exists")
     if mesh is not None and model == "rod":
         raise InputError("--mesh belongs to the 3D reference; give it with --model reference")
     if vtu is not None and (vtu.suffix != ".vtu" or vtu.is_dir() or not vtu.parent.is_dir()):
@@ -143,25 +162,43 @@ def solve(
     from reports.runner import run_reference, run_rod
 
     solutions: list[Solution] = []
+    chosen: AdaptiveSolution | None = None
     with status(f"{loaded.name}: {model}"):
-        if model == "rod":
-            answer = run_rod(loaded, level, order, solved=solutions.append)
+        if auto:
+            from reports.choice import run_auto
+
+            answer, chosen = run_auto(loaded, wanted, solved=solutions.append)
+        elif model == "rod":
+            given = level if isinstance(level, int) else None
+            answer = run_rod(loaded, given, order, solved=solutions.append)
         else:
             answer = run_reference(loaded, mesh, solved=solutions.append)
     if vtu is not None:
         for path in _written_fields(solutions[0], vtu):
             print(f"rodcheck: wrote {path}", file=sys.stderr)
+    if picture is not None and chosen is not None:
+        print(f"rodcheck: wrote {_written_picture(chosen, picture)}", file=sys.stderr)
     if json:
-        quantities = answer.quantities
-        print(
-            result(loaded.name, model, answer.level, answer.order, quantities, answer.total_seconds).model_dump_json()
-        )
+        quantities, choice = answer.quantities, None
+        if chosen is not None:
+            from reports.choice import choice_result
+
+            choice = choice_result(chosen)
+        found = result(loaded.name, model, answer.level, answer.order, quantities, answer.total_seconds, choice)
+        print(found.model_dump_json())
     else:
         from reports.tables import print_run
 
         print_run(loaded, answer)
+        if chosen is not None:
+            from reports.choice import print_choice
+
+            print_choice(chosen)
     if not answer.quantities.converged:
         print(f"rodcheck: {loaded.name}: not converged: {answer.quantities.outcome}", file=sys.stderr)
+        return NOT_PASSED
+    if chosen is not None and chosen.outcome != "converged":
+        print(f"rodcheck: {loaded.name}: tolerance {100.0 * wanted:g} % {chosen.outcome}", file=sys.stderr)
         return NOT_PASSED
     return 0
 
@@ -613,6 +650,31 @@ def _written_fields(solution: Solution, path: Path) -> tuple[Path, ...]:
     except OSError as error:
         where = f"cannot write to {error.filename or path} ({error.strerror})"
         raise InputError(f"--vtu: {where}; give another place") from error
+
+
+def _written_picture(chosen: AdaptiveSolution, path: Path) -> Path:
+    from reports.levels_figure import write_levels
+
+    try:
+        return write_levels(chosen, path)
+    except OSError as error:
+        where = f"cannot write to {error.filename or path} ({error.strerror})"
+        raise InputError(f"--picture: {where}; give another place") from error
+
+
+def _tolerance(given: str | None) -> float:
+    """A relative tolerance written as a fraction or in per cent."""
+    from rodmodel.adaptive import LARGEST, SMALLEST
+
+    text = "0.1%" if given is None else given.strip()
+    try:
+        value = float(text.removesuffix("%")) * (0.01 if text.endswith("%") else 1.0)
+    except ValueError:
+        value = float("nan")
+    if not SMALLEST <= value <= LARGEST:
+        limits = f"{100.0 * SMALLEST:g}% to {100.0 * LARGEST:g}%"
+        raise InputError(f"--tolerance: found {given}; give {limits}, such as 0.1% or 0.001")
+    return value
 
 
 def _verification_outcomes() -> dict[str, Outcome] | None:

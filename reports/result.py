@@ -89,6 +89,44 @@ class RodCurves(_Object):
     max_bending_stress: float | None = Field(description=_described("max_bending_stress") + " Null without a clamp.")
 
 
+class GoalEstimate(_Object):
+    """A quantity that the solver watched, and how far its own limit may be from it."""
+
+    kind: str = Field(description="'contact force', 'deflection' (the largest), 'clamp moment' or 'contact edge'.")
+    of: str = Field(description="Name of the rod or contact pair.")
+    unit: str
+    value: float
+    error: float | None = Field(description="Estimated, in the unit; null where nothing is known of it.")
+
+
+class ElementChoice(_Object):
+    """An element of the last step."""
+
+    start: float = Field(description="Arc length from the rod's start, mm.")
+    end: float = Field(description="Arc length from the rod's start, mm.")
+    level: int
+    order: int
+    reason: str = Field(description="Why it has this level and order.")
+
+
+class StepCost(_Object):
+    """One solution on the way to the tolerance."""
+
+    level: int = Field(description="Highest level of any element.")
+    unknowns: int
+    seconds: float = Field(description="Wall-clock time, s.")
+
+
+class Choice(_Object):
+    """Levels, orders and elements of the solver's own choice."""
+
+    tolerance: float = Field(description="Asked for: relative, of contact forces, largest deflections, clamp moments.")
+    outcome: str = Field(description="'converged', or why the tolerance is not met.")
+    estimates: list[GoalEstimate]
+    elements: dict[str, list[ElementChoice]]
+    steps: list[StepCost]
+
+
 class Result(_Object):
     """One case solved by one model. Units: N, mm, MPa, s."""
 
@@ -107,6 +145,7 @@ class Result(_Object):
     contacts: list[Contact]
     rods: dict[str, RodCurves]
     reactions: list[Reaction]
+    choice: Choice | None = Field(description="Null where level and order were given, and for the reference.")
 
 
 def result(
@@ -116,6 +155,7 @@ def result(
     order: Grades | None,
     quantities: Quantities,
     total_seconds: float,
+    choice: Choice | None = None,
 ) -> Result:
     """The result object of a solved case.
 
@@ -143,6 +183,7 @@ def result(
             Reaction(rod=rod, station=station, force=found[:3].tolist(), moment=found[3:].tolist())
             for (rod, station), found in quantities.reactions.items()
         ],
+        choice=choice,
     )
 
 

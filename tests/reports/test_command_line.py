@@ -44,6 +44,12 @@ def solved(monkeypatch: pytest.MonkeyPatch):
         ["solve", CASE, "--level", "99"],
         ["solve", CASE, "--level", "five"],
         ["solve", CASE, "--order", "1"],
+        ["solve", CASE, "--level", "auto", "--order", "5"],
+        ["solve", CASE, "--level", "5", "--tolerance", "0.1%"],
+        ["solve", CASE, "--tolerance", "fine"],
+        ["solve", CASE, "--tolerance", "0"],
+        ["solve", CASE, "--tolerance", "50%"],
+        ["solve", CASE, "--picture", "levels.png"],
         ["solve", CASE, "--model", "abaqus"],
         ["solve", CASE, "--model", "reference", "--level", "3"],
         ["solve", CASE, CASE],
@@ -151,7 +157,7 @@ def test_solve_takes_levels_and_orders_of_elements_from_the_case(
     assert command_line.run(["schema", "result"]) == 0
     schema = json.loads(capsys.readouterr().out)
 
-    assert command_line.run(["solve", graded, "--json"]) == 0
+    assert command_line.run(["solve", graded, "--level", "case", "--json"]) == 0
 
     printed = json.loads(capsys.readouterr().out)
     jsonschema.validate(printed, schema)
@@ -179,7 +185,7 @@ def test_an_unconverged_solve_shows_its_result_and_exits_with_1(
     unfinished = replace(case_run.rod, quantities=replace(case_run.rod.quantities, outcome="cycling"))
     monkeypatch.setattr("reports.runner.run_rod", lambda *_, **__: unfinished)
 
-    code = command_line.run(["solve", CASE, "--json"])
+    code = command_line.run(["solve", CASE, "--level", "case", "--json"])
 
     shown = capsys.readouterr()
     assert code == 1
@@ -283,7 +289,7 @@ def test_an_interrupt_exits_with_130_and_no_traceback(
 
     monkeypatch.setattr("reports.runner.run_rod", interrupted)
 
-    assert command_line.run(["solve", CASE, "--json"]) == 130
+    assert command_line.run(["solve", CASE, "--level", "case", "--json"]) == 130
     shown = capsys.readouterr()
     assert shown.out == ""
     assert "Traceback" not in shown.err
