@@ -25,6 +25,8 @@ BoolArray = NDArray[np.bool_]
 
 # An edge counts as found when the next step would move it by less than this, mm.
 EDGE_TOLERANCE = 0.01
+# Of short stretches it is this part of their length: their force hangs on it.
+SHARE = 2e-3
 MOST_STEPS = 8
 # Longest step as a part of the zone.
 LONGEST_STEP = 0.1
@@ -103,7 +105,7 @@ def find_edges(
         new = positions + outward * _step(scene, current, edges, values[-1], jacobian, bracket)
         if _out_of_place(scene, moved(stretches, edges, new)):
             outcome = "topology"
-        elif np.abs(new - positions).max() < EDGE_TOLERANCE:
+        elif (np.abs(new - positions) < np.minimum(EDGE_TOLERANCE, SHARE * _lengths(current, edges))).all():
             outcome = "converged"
         elif len(tried) == MOST_STEPS:
             outcome = "stagnated"

@@ -9,17 +9,18 @@ of a solution of its own, so that the elements and the answer are, too, up to th
 from __future__ import annotations
 
 import time
-from collections.abc import Hashable, Iterable, Iterator, Sequence
+from collections.abc import Hashable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 
-from cases.scene import Load, Rod, Scene
+from cases.scene import Load, Scene
 from rodmodel.assembly import (
-    AssembledRod,
     ElementStore,
+    Functionals,
+    Mirrors,
     compliance,
     cross_compliance,
     functionals,
@@ -30,12 +31,14 @@ from rodmodel.assembly import (
 from rodmodel.borders import Edge, natural_mesh
 from rodmodel.contact import unilateral_contact
 from rodmodel.edges import EdgeSearch
+from rodmodel.joints import Loose
 from rodmodel.loads import load_parts
 from rodmodel.loose import loose_rods
 from rodmodel.mesh import RodMesh, lowest
 from rodmodel.section import axial_modulus, per_axial_modulus
 from rodmodel.solution import Solution
 from rodmodel.solver import Grades, MovedContact, SystemOn, checked, grades_of, moved_contact, solution_of
+from rodmodel.stiffness import Element
 from rodmodel.stretches import Stretch, stretches_in_contact
 from rodmodel.symmetry import scene_mirrors
 from rodmodel.system import ContactSystem, contact_system, joined_system
@@ -82,13 +85,10 @@ def sweep(
     SceneError, ValueError
         as `solve`.
     """
-    store, look, trail = SystemStore(), Look(), Trail()
+    store, look, trail = SystemStore(level, order, multipliers), Look(), Trail()
     for at, scene in scenes:
         begin = time.perf_counter()
-        meshes = {
-            rod.name: natural_mesh(scene, rod, grades_of(level, rod), grades_of(order, rod)) for rod in scene.rods
-        }
-        systems = store.systems(scene, multipliers)
+        systems, meshes = store.systems(scene), store.common(scene).meshes
         ready = time.perf_counter()
         stretches = look.stretches(systems(lowest(meshes)))
         contact = moved_contact(scene, meshes, stretches, systems, trail.at(at))
@@ -97,7 +97,8 @@ def sweep(
             # What was continued may have led astray.
             contact, followed = moved_contact(scene, meshes, stretches, systems), False
         trail.add(at, contact)
-        yield Swept(checked(solution_of(scene, contact, begin, ready)), followed or contact.search is None)
+        solution = solution_of(scene, contact, begin, ready)
+        yield Swept(store.checked(solution), followed or contact.search is None)
         store.forget()
 
 
@@ -193,40 +194,80 @@ class KeptSystem:
         return self.responses[name]
 
 
+@dataclass(frozen=True, eq=False)
+class Common:
+    """What scenes have in common that differ in moduli, loads of the same directions, and gaps.
+
+    Attributes
+    ----------
+    shape : tells such scenes from others
+    reusable : whether a rod's compliance goes with its modulus: beds and joints come in between
+    """
+
+    shape: Hashable
+    mirrors: Mapping[str, Mirrors]
+    loose: Sequence[Loose]
+    meshes: dict[str, RodMesh]
+    reusable: bool
+
+
 @dataclass(eq=False)
 class SystemStore:
     """Elements, and the contact systems of the last meshes."""
 
+    level: Grades
+    order: Grades
+    multipliers: bool
+    _common: Common | None = None
+    _sound: tuple[Element, ...] | None = None
     _elements: ElementStore = field(default_factory=ElementStore)
     _kept: dict[Hashable, KeptSystem] = field(default_factory=dict)
 
-    def systems(self, scene: Scene, multipliers: bool) -> SystemOn:
-        """What makes the scene's contact systems, as those of `rodmodel.solver.systems`.
+    def common(self, scene: Scene) -> Common:
+        """Mirrors, natural meshes and the like of a scene.
 
         Raises
         ------
         SceneError
             if supports, joints and beds leave a rod loose that no contact could hold.
         """
-        mirrors = scene_mirrors(scene)
-        loose = loose_rods(scene, mirrors)
-        # Moduli of beds and prescribed displacements come between a rod and its modulus, joints between rods.
-        plain = bool(loose or scene.joints or scene.beds)
-        shape = None if plain else _shape(scene, multipliers)
+        shape = _shape(scene)
+        if self._common is None or self._common.shape != shape:
+            mirrors = scene_mirrors(scene)
+            loose = loose_rods(scene, mirrors)
+            meshes = {
+                rod.name: natural_mesh(scene, rod, grades_of(self.level, rod), grades_of(self.order, rod))
+                for rod in scene.rods
+            }
+            self._common = Common(shape, mirrors, loose, meshes, not (loose or scene.joints or scene.beds))
+        return self._common
+
+    def systems(self, scene: Scene) -> SystemOn:
+        """What makes the scene's contact systems, as those of `rodmodel.solver.systems`."""
+        common = self.common(scene)
 
         def system_on(meshes: dict[str, RodMesh]) -> ContactSystem:
-            key = (shape, *(_mesh_key(meshes[rod.name]) for rod in scene.rods))
-            kept = None if shape is None else self._kept.pop(key, None)
+            key = (common.shape, *(_mesh_key(meshes[rod.name]) for rod in scene.rods))
+            kept = self._kept.pop(key, None) if common.reusable else None
             if kept is None:
-                system = contact_system(scene, mirrors, meshes, self._elements, loose, multipliers)
+                system = contact_system(scene, common.mirrors, meshes, self._elements, common.loose, self.multipliers)
                 kept = KeptSystem(system)
             else:
-                system = _with_scene(kept, scene, multipliers)
-            if shape is not None and not any(given_displacement(rod) for rod in system.rods.values()):
+                system = _with_scene(kept, scene, self.multipliers)
+            if common.reusable and not any(given_displacement(rod) for rod in system.rods.values()):
                 self._kept[key] = kept
             return system
 
         return system_on
+
+    def checked(self, solution: Solution) -> Solution:
+        """The solution, refused if round-off has falsified it: that is a matter of its elements, looked at once."""
+        elements = tuple(element for rod in solution.system.rods.values() for element in rod.elements)
+        if self._sound is not None and all(a is b for a, b in zip(elements, self._sound, strict=False)):
+            return solution
+        result = checked(solution)
+        self._sound = elements if result.outcome == "converged" else None
+        return result
 
     def forget(self) -> None:
         """Let go of the systems and elements that were not used for long."""
@@ -235,11 +276,23 @@ class SystemStore:
         self._elements.forget(MOST_ELEMENTS)
 
 
-def _shape(scene: Scene, multipliers: bool) -> Hashable:
-    """All that a rod's compliance at its contact points depends on, but for moduli and elements."""
-    rods = tuple((rod.name, rod.centre_line, rod.section, per_axial_modulus(rod.material)) for rod in scene.rods)
-    pairs = tuple((pair.name, pair.first, pair.second, pair.zone) for pair in scene.contacts)
-    return rods, scene.supports, pairs, multipliers
+def _shape(scene: Scene) -> Hashable:
+    """All that elements, symmetry and compliance at the contact points depend on, but for moduli and levels.
+
+    Of loads it is where they act and in which directions, of gaps whether they are drawn.
+    """
+    rods = tuple(
+        (rod.name, rod.centre_line, rod.section, per_axial_modulus(rod.material), rod.element_borders)
+        for rod in scene.rods
+    )
+    loads = tuple(tuple(_direction(value) for value in vars(load).values()) for load in scene.loads)
+    pairs = tuple((pair.name, pair.first, pair.second, pair.zone, pair.gap == "drawn") for pair in scene.contacts)
+    return rods, scene.supports, scene.joints, scene.beds, loads, pairs
+
+
+def _direction(value: object) -> object:
+    """Signs of a vector, which is a force, moment or acceleration; anything else as it is."""
+    return tuple(np.sign(value).tolist()) if isinstance(value, tuple) else value
 
 
 def _mesh_key(mesh: RodMesh) -> Hashable:
@@ -249,23 +302,47 @@ def _mesh_key(mesh: RodMesh) -> Hashable:
 def _with_scene(kept: KeptSystem, scene: Scene, multipliers: bool) -> ContactSystem:
     """A kept system with the moduli, loads and gaps of another scene."""
     old = kept.system
-    rods, found, responses = {}, {}, {}
+    rods, responses, softer, loads = {}, {}, {}, {}
     for rod in scene.rods:
         name, assembled = rod.name, old.rods[rod.name]
-        softer = axial_modulus(assembled.rod.material) / axial_modulus(rod.material)
-        rods[name] = _with_material(assembled, rod)
-        found[name], responses[name] = scaled(old.functionals[name], np.sqrt(softer)), softer * kept.response(name)
+        rods[name] = replace(assembled, rod=rod, chain=assembled.chain.with_modulus(axial_modulus(rod.material)))
+        softer[name] = axial_modulus(assembled.rod.material) / axial_modulus(rod.material)
+        responses[name] = softer[name] * kept.response(name)
         if _loads(scene, name) != _loads(old.scene, name):
-            parts = load_parts(rods[name], scene.loads, column=0)
-            load = functionals(rods[name], parts, count=1)
-            found[name] = last_replaced(found[name], load)
-            responses[name][:-1, -1] = cross_compliance(found[name], load)[:-1, 0]
+            loads[name] = functionals(assembled, load_parts(assembled, scene.loads, column=0), count=1)
+            on_points = cross_compliance(old.functionals[name], loads[name])
+            responses[name][:-1, -1] = softer[name] * on_points[:-1, 0]
+    found = ScaledFunctionals(old.functionals, softer, loads)
     return joined_system(scene, rods, old.grids, found, old.places, responses, None, multipliers)
+
+
+@dataclass(frozen=True, eq=False)
+class ScaledFunctionals(Mapping[str, Functionals]):
+    """Functionals of rods, made when they are asked for: of the same rods with other moduli and loads.
+
+    Attributes
+    ----------
+    softer : by rod name, modulus of the rods they are of by that of the others
+    loads : of rods with another load, on the rods they are of
+    """
+
+    of: Mapping[str, Functionals]
+    softer: Mapping[str, float]
+    loads: Mapping[str, Functionals]
+
+    def __getitem__(self, name: str) -> Functionals:
+        """Functionals of one rod."""
+        found = self.of[name] if name not in self.loads else last_replaced(self.of[name], self.loads[name])
+        return scaled(found, float(np.sqrt(self.softer[name])))
+
+    def __iter__(self) -> Iterator[str]:
+        """Names of the rods."""
+        return iter(self.of)
+
+    def __len__(self) -> int:
+        """How many rods there are."""
+        return len(self.of)
 
 
 def _loads(scene: Scene, rod: str) -> list[Load]:
     return [load for load in scene.loads if load.rod == rod]
-
-
-def _with_material(assembled: AssembledRod, rod: Rod) -> AssembledRod:
-    return replace(assembled, rod=rod, chain=assembled.chain.with_modulus(axial_modulus(rod.material)))
