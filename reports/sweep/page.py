@@ -9,16 +9,15 @@ import plotly.graph_objects as go
 
 from reports.figures import styled
 from reports.html import rendered
-from reports.quantities import DEFINITIONS
 from reports.store import write_whole
 from reports.sweep.keys import Variation
-from reports.sweep.run import Row
+from reports.sweep.run import SWEPT, Row
 
 # Okabe and Ito (2008), dark enough on white.
 COLOURS = ("#0072B2", "#D55E00", "#007A5A", "#B5548A", "#56789A", "#8A6D00")
 HEIGHT = 320
-# Checks of the solution are in the tables; they are no answers to draw.
-NOT_DRAWN = ("equilibrium_residual", "penetration")
+# In the tables alone: checks of the solution, and edges that the search knows better.
+NOT_DRAWN = ("equilibrium_residual", "penetration", "contact_edges")
 # Up to so many points a line shows where they are.
 MOST_MARKED = 60
 
@@ -38,7 +37,7 @@ def write_page(
     shown = [quantity for quantity in dict.fromkeys(row.quantity for row in rows) if quantity not in NOT_DRAWN]
     figures = {f"plot-{quantity}": _figure(rows, variations, quantity) for quantity in shown}
     panels = [
-        {"anchor": f"plot-{quantity}", "title": DEFINITIONS[quantity].title, "text": DEFINITIONS[quantity].text}
+        {"anchor": f"plot-{quantity}", "title": SWEPT[quantity].title, "text": SWEPT[quantity].text}
         for quantity in shown
     ]
     path = folder / f"{name}.html"
@@ -83,7 +82,7 @@ def _figure(rows: Sequence[Row], variations: Sequence[Variation], quantity: str)
             marker={"size": 5},
             hovertemplate="%{y:.6g} at %{x:.6g}",
         )
-    unit = DEFINITIONS[quantity].unit
+    unit = SWEPT[quantity].unit
     figure.update_xaxes(title_text=along.title, type="log" if along.logarithmic and along.values[0] > 0 else "linear")
     figure.update_yaxes(title_text=unit)
     return styled(figure, HEIGHT)

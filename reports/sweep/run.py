@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -15,15 +15,30 @@ from reports.equilibrium import equilibrium_residual
 from reports.quantities import (
     DEFINITIONS,
     ContactQuantities,
+    Definition,
     RodQuantities,
     contact_quantities,
     default_stations,
     rod_quantities,
     stress_s,
 )
-from reports.solution import Array, Solution
+from reports.solution import Array
 from reports.sweep.keys import SweepPoint, Variation
+from rodmodel.solution import Solution
 from rodmodel.sweep import sweep
+
+# All quantities of a sweep. What `contact_edges` reads off the pressure depends on which points next to the edge touch,
+# and jumps by some tenths of a millimetre from value to value; where the search has put the borders does not.
+SWEPT: Mapping[str, Definition] = {
+    **DEFINITIONS,
+    "contact_borders": Definition(
+        "Contact edges, as searched for",
+        "mm",
+        "Start and end of each stretch in contact, along the global axis that the first rod is most nearly parallel to "
+        "in the middle of the zone: where the rod model's search has found the pressure in the middle of the width to "
+        "vanish, to 0.01 mm; where it did not settle, where the contact points show an edge.",
+    ),
+}
 
 
 @dataclass(frozen=True)
@@ -34,7 +49,7 @@ class Row:
     ----------
     number : of the combination, from 1
     values : of the varied keys, in the units of the variations
-    quantity : one of `reports.quantities.DEFINITIONS`
+    quantity : one of `SWEPT`
     of : rod or contact pair; empty for the whole scene
     part : which of several, such as 'start 1' of the first stretch in contact; empty where there is one
     value : in the unit of the quantity's definition
@@ -78,7 +93,7 @@ def sweep_rows(points: Sequence[SweepPoint], variations: Sequence[Variation]) ->
                     of,
                     part,
                     value,
-                    DEFINITIONS[quantity].unit,
+                    SWEPT[quantity].unit,
                     swept.solution.outcome,
                     swept.followed,
                 )
@@ -112,6 +127,7 @@ def sweep_quantities(
     contacts = [contact_quantities(solution, pair, max(largest.values())) for pair in scene.contacts]
     for contact in contacts:
         yield from _of_contact(contact)
+        yield from _borders(solution, contact)
     for rod in scene.rods:
         yield "deflection", rod.name, "largest", largest[rod.name]
         yield from _of_rod(rod_quantities(solution, rod, applied[rod.name], at[rod.name]))
@@ -139,6 +155,15 @@ def _of_contact(contact: ContactQuantities) -> Iterator[tuple[str, str, str, flo
             yield quantity, contact.pair, f"start {number}", start
             yield quantity, contact.pair, f"end {number}", end
     yield "penetration", contact.pair, "", contact.penetration
+
+
+def _borders(solution: Solution, contact: ContactQuantities) -> Iterator[tuple[str, str, str, float]]:
+    first = solution.scene.contact(contact.pair).first.rod
+    stretches = [stretch for stretch in solution.stretches if stretch.pair == contact.pair]
+    for number, stretch in enumerate(stretches, 1):
+        ends = solution.frame(first, np.array([stretch.start, stretch.end]))[0][contact.axis]
+        yield "contact_borders", contact.pair, f"start {number}", float(ends.min())
+        yield "contact_borders", contact.pair, f"end {number}", float(ends.max())
 
 
 def _of_rod(rod: RodQuantities) -> Iterator[tuple[str, str, str, float]]:

@@ -93,7 +93,7 @@ def test_searches_follow_the_edges_of_the_scenes_before(scene: Scene) -> None:
     found = swept(scene, with_modulus, np.linspace(49e3, 55e3, 12))
 
     assert [each.followed for each, _ in found] == [False] + 11 * [True]
-    # once four scenes show where edges go, one system on borders there is all that is made, after a look on the given ones
+    # after a look on the given borders, one system on those where four scenes have shown that edges go
     assert [each.solution.contact_solutions for each, _ in found][4:] == 8 * [1]
 
 
