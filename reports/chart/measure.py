@@ -6,6 +6,7 @@ in turn, several times each; the 3D reference's meshes and the peers' own come f
 
 from __future__ import annotations
 
+import os
 import time
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -192,6 +193,12 @@ def measure(case: Case, _progress: Progress, stations: Mapping[str, Array], enou
         notes.append(
             f"{len(left_out)} of {len(rods)} configurations of the rod model were left out, as the others took "
             f"{enough:g} s: {', '.join(each.label for each in left_out)}."
+        )
+    load, processors = os.getloadavg()[0], os.cpu_count() or 1
+    if load > processors:
+        notes.append(
+            f"The machine was busy while the rod model, beams and tuned NGSolve were measured: a load of {load:.1f} on "
+            f"{processors} processors, which makes processor seconds longer, too."
         )
     return Measured(tuple(each.point() for each in (*rods, *others) if each.told is not None), tuple(notes))
 
