@@ -111,6 +111,18 @@ def test_a_failed_case_is_on_the_page_with_its_reason(case_run: CaseRun) -> None
     assert case_run.case.title in page
 
 
+def test_what_moved_since_earlier_runs_stands_at_the_top_where_somebody_looked(case_run: CaseRun, page: str) -> None:
+    drawn = {case_run.case.name: PICTURE}
+
+    moved = site.render([case_run], drawn, moved=["bars: force: from <1> to 2 N"])
+    still = site.render([case_run], drawn, moved=[])
+
+    assert "<li>bars: force: from &lt;1&gt; to 2 N</li>" in moved
+    assert moved.index('id="moved"') < moved.index('id="cases"')
+    assert "Nothing: verdicts" in still
+    assert 'id="moved"' not in page
+
+
 def test_a_solver_that_did_not_converge_is_named(case_run: CaseRun) -> None:
     quantities = replace(case_run.rod.quantities, outcome="cycling")
 

@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+import pickle
+import signal
+import subprocess
+import sys
 import time
 from collections.abc import Callable
 from dataclasses import replace
@@ -103,6 +107,15 @@ def test_a_case_whose_answer_nobody_wants_any_more_is_ended(case_process: Proces
     run_in_process(task, wanted=lambda: time.monotonic() - begin < 0.5)
 
     assert time.monotonic() - begin < 30.0
+
+
+@pytest.mark.slow
+def test_a_case_ends_with_the_process_that_asked_for_it(task: Task) -> None:
+    command = [sys.executable, "-m", "reports.nightly.case_process"]
+    with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, start_new_session=True) as process:
+        process.communicate(pickle.dumps(task))  # which closes its standard input, as a death of this process would
+
+    assert process.returncode == -signal.SIGKILL
 
 
 def test_a_killed_process_is_told_apart_from_one_that_fails(case_process: Processes, task: Task) -> None:

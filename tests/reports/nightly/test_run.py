@@ -1,0 +1,219 @@
+"""A nightly run as a whole: what it writes, how it says what came of it, and that a killed one goes on."""
+
+from __future__ import annotations
+
+import errno
+import json
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from cases.case import Case
+from reports import command_line
+from reports.nightly import run as nightly_run
+from reports.nightly.history import read_history
+from reports.nightly.task import Task
+from reports.nightly.unfinished import locked
+from reports.runner import CaseRun, Failure
+
+CASE = "two-cantilevers-e20-g0"
+Answered = Callable[..., None]
+
+
+def passing(run: CaseRun) -> CaseRun:
+    return replace(run, comparisons=tuple(replace(found, verdict="pass") for found in run.comparisons))
+
+
+@pytest.fixture
+def answered(monkeypatch: pytest.MonkeyPatch) -> Answered:
+    """Sets what comes of the tasks, instead of solving; and leaves the page out."""
+
+    def set_answer(answer: Callable[[Case], CaseRun | Failure]) -> None:
+        def run_tasks(tasks: Sequence[Task], *_: object) -> Iterator[CaseRun | Failure]:
+            return (answer(task.case) for task in tasks)
+
+        monkeypatch.setattr(nightly_run, "run_tasks", run_tasks)
+
+    monkeypatch.setattr(nightly_run, "write_report", lambda _runs, output, moved: output / "index.html")
+    return set_answer
+
+
+def test_a_night_as_expected_is_exit_code_0_and_a_short_summary(
+    tmp_path: Path, case_run: CaseRun, answered: Answered, capsys: pytest.CaptureFixture[str]
+) -> None:
+    answered(lambda case: replace(passing(case_run), case=case))
+
+    code = command_line.run(["nightly", CASE, "--no-peers", "--no-cache", "--output", str(tmp_path)])
+
+    shown = capsys.readouterr()
+    assert (code, shown.err) == (0, "")
+    verdicts = len(case_run.comparisons)
+    assert shown.out.startswith(f"rodcheck nightly: 1 case; {verdicts} pass; nothing moved\n")
+    assert (tmp_path / "summary.txt").read_text() == shown.out.partition("\n\nReport:")[0] + "\n"
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["history", "lock", "summary.txt"]
+
+
+def test_what_moved_and_what_failed_is_said_and_is_exit_code_1(
+    tmp_path: Path, case_run: CaseRun, answered: Answered, capsys: pytest.CaptureFixture[str]
+) -> None:
+    command = ["nightly", CASE, "crossed-cantilevers", "--no-peers", "--no-cache", "--output", str(tmp_path)]
+    good = passing(case_run)
+    answered(lambda case: replace(good, case=case))
+    command_line.run(command)
+    changed = (replace(good.comparisons[0], verdict="fail", difference=0.5), *good.comparisons[1:])
+    answered(
+        lambda case: replace(good, case=case, comparisons=changed) if case.name == CASE else Failure(case, "it broke")
+    )
+    capsys.readouterr()
+
+    code = command_line.run(command)
+
+    lines = capsys.readouterr().out.splitlines()
+    assert code == 1
+    assert ", 1 not run; 1 fail" in lines[0].replace(f"{len(changed) - 1} pass, ", "")
+    assert "- crossed-cantilevers: not run: it broke" in lines
+    assert any(line.startswith(f"- {CASE}: ") and "from pass to fail" in line for line in lines)
+
+
+def test_a_full_disk_is_one_sentence_and_what_was_computed_is_kept(
+    tmp_path: Path,
+    case_run: CaseRun,
+    answered: Answered,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    command = ["nightly", CASE, "--no-peers", "--no-cache", "--output", str(tmp_path)]
+    asked = []
+
+    def answer(case: Case) -> CaseRun:
+        asked.append(case.name)
+        return replace(passing(case_run), case=case)
+
+    def full(_folder: Path, _rows: object) -> None:
+        raise OSError(errno.ENOSPC, "No space left on device", str(tmp_path / "history"))
+
+    answered(answer)
+    with monkeypatch.context() as patched:
+        patched.setattr(nightly_run, "write_run", full)
+        code = command_line.run(command)
+
+    shown = capsys.readouterr()
+    assert (code, shown.out) == (2, "")
+    assert shown.err.count("\n") == 1
+    assert "No space left on device" in shown.err
+    assert command_line.run(command) == 0
+    assert asked == [CASE]  # once, not again
+    assert len(list((tmp_path / "history").iterdir())) == 1
+
+
+def test_a_run_that_ends_after_its_history_is_written_writes_it_once(
+    tmp_path: Path, case_run: CaseRun, answered: Answered, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    command = ["nightly", CASE, "--no-peers", "--no-cache", "--output", str(tmp_path)]
+    answered(lambda case: replace(passing(case_run), case=case))
+
+    def killed(*_: object, **__: object) -> None:
+        raise KeyboardInterrupt
+
+    with monkeypatch.context() as patched:
+        patched.setattr(nightly_run, "write_report", killed)
+        assert command_line.run(command) == 130
+    (first,) = (tmp_path / "history").iterdir()
+
+    assert command_line.run(command) == 0
+
+    assert list((tmp_path / "history").iterdir()) == [first]
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ["nightly", "no-such-case"],
+        ["nightly", CASE, "--memory-limit", "4"],
+        ["nightly", CASE, "--memory-limit", "0GB"],
+        ["nightly", CASE, "--time-limit", "soon"],
+        ["nightly", CASE, "--output", __file__],
+        ["nightly", CASE, "--output", f"{__file__}/below"],
+        ["history", CASE, "--folder", "no such folder"],
+        ["history", CASE, "--folder", __file__],
+    ],
+    ids=" ".join,
+)
+def test_bad_input_is_one_sentence_and_exit_code_2(
+    arguments: Sequence[str], capsys: pytest.CaptureFixture[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+
+    code = command_line.run([*arguments, "--no-cache"] if arguments[0] == "nightly" else arguments)
+
+    shown = capsys.readouterr()
+    assert (code, shown.out, shown.err.count("\n")) == (2, "", 1)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_the_history_of_a_case_is_a_table_and_json(
+    tmp_path: Path, case_run: CaseRun, answered: Answered, capsys: pytest.CaptureFixture[str]
+) -> None:
+    answered(lambda case: replace(case_run, case=case))
+    command_line.run(["nightly", CASE, "--no-peers", "--no-cache", "--output", str(tmp_path)])
+    (tmp_path / "history" / "stranger").touch()
+    capsys.readouterr()
+    asked = ["history", CASE, "contact_force", "--folder", str(tmp_path / "history")]
+
+    assert command_line.run(asked) == 0
+    table = capsys.readouterr()
+    assert command_line.run([*asked, "--json"]) == 0
+    rows = json.loads(capsys.readouterr().out)
+
+    assert "rod model contact force" in table.out
+    assert (
+        table.err
+        == f"rodcheck: history: {tmp_path}/history/stranger is not a file that rodcheck wrote; it is skipped\n"
+    )
+    assert {row["quantity"] for row in rows} == {"contact_force"}
+    assert {row["solver"] for row in rows} == {"rod model", "3D"}
+    assert command_line.run([*asked[:2], "mass", *asked[3:]]) == 2
+    assert "it has bending_moment" in capsys.readouterr().err
+
+
+def test_a_second_run_in_the_same_folder_says_so(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    with locked(tmp_path):
+        code = command_line.run(["nightly", CASE, "--no-cache", "--output", str(tmp_path)])
+
+    shown = capsys.readouterr()
+    assert (code, shown.out, shown.err.count("\n")) == (2, "", 1)
+    assert "another nightly run is at work" in shown.err
+
+
+@pytest.mark.slow
+def test_a_killed_run_goes_on_where_it_was(tmp_path: Path, tiny_files: tuple[Path, Path]) -> None:
+    output = tmp_path / "output"
+    code = (
+        "import sys, reports.nightly.run as run; from reports.command_line import main\n"
+        "run.write_report = lambda runs, output, moved: None  # drawing takes longer than all the rest\n"
+        "main()"
+    )
+    command = [sys.executable, "-c", code, "nightly", *map(str, tiny_files)]
+    command += ["--no-peers", "--no-cache", "--output", str(output)]
+    with subprocess.Popen(command) as first:
+        kept: list[Path] = []
+        while not kept and first.poll() is None:
+            time.sleep(0.02)
+            kept = list((output / "unfinished").glob("case-*.json"))
+        first.kill()
+    name = json.loads((output / "unfinished" / "run.json").read_text())["run"]
+
+    resumed = subprocess.run(command, capture_output=True, text=True, check=False)
+
+    assert kept
+    assert (resumed.returncode, resumed.stderr) == (0, "")
+    history = read_history(output / "history")
+    assert history.notes == ()
+    assert history.cases() == ["double", "tiny"]
+    assert {row.run for row in history.rows("tiny")} == {name}
+    assert sorted(path.name for path in output.iterdir()) == ["history", "lock", "summary.txt"]
