@@ -85,7 +85,7 @@ def race_rows(found: Sequence[Race]) -> list[tuple[str, list[tuple[str, str]]]]:
 
 def _times(ratio: float) -> str:
     """A ratio with three digits and no exponent."""
-    return f"{float(f'{ratio:.3g}'):,.10g} x".replace(",", " ")
+    return f"{float(f'{ratio:.3g}'):,.10g} x".replace(",", " ").replace(" ", "\u00a0")
 
 
 def print_race(chart: Chart) -> None:

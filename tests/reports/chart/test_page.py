@@ -70,7 +70,7 @@ def test_the_page_is_whole_and_escapes_what_it_did_not_write(page: str) -> None:
     assert all(f'id="{place}"' in page for place in figures)
     assert 'http-equiv="Content-Security-Policy" content="default-src \'none\';' in page
     assert "All 5 configurations in numbers" in page
-    assert "80 ms (40 ms to 160 ms), 4 x" in page
+    assert "80 ms (40 ms to 160 ms), 4\u00a0x" in page
 
 
 def test_numbers_stand_beside_the_page(page: str, chart: Chart, case_run: CaseRun, tmp_path: Path) -> None:
