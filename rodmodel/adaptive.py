@@ -39,7 +39,7 @@ UNMOVED_ENOUGH = 5e-3
 # Steps after which what the last level would reach is believed, and by how much it may miss the tolerance.
 CERTAIN, HOPELESS = 3, 1.5
 # Energy in highest functions that need not be raised, as a part of the tolerance.
-BUDGET = 0.1
+BUDGET = 0.03
 # Tolerances that make sense: below, round-off and the tolerance of contact edges show; above, nothing is asked for.
 SMALLEST, LARGEST = 1e-5, 0.2
 

@@ -15,8 +15,9 @@ from scipy.optimize import brentq
 
 Array = NDArray[np.float64]
 
-# The power a where nothing is known of it, and what it may be.
-USUAL, LEAST, MOST = 2.0, 0.5, 3.0
+# The power a where nothing is known of it, and the least that it may be. What falls faster at low levels, where much
+# of it is not the corners', is not believed to go on like that.
+USUAL, LEAST = 2.0, 0.5
 # A difference may happen to be small; it then counts with this part of what the one before lets expect.
 EXPECTED = 0.3
 
@@ -36,7 +37,7 @@ def remaining_errors(levels: Sequence[int], values: Array) -> tuple[Array, float
     if len(values) > 2:
         known = ~np.isnan(differences[-2:]).any(axis=0)
         before, last = differences[-2:, known].sum(axis=1)
-        power = fitted_power(levels[-3:], last / before) if before > 0.0 else MOST
+        power = fitted_power(levels[-3:], last / before) if before > 0.0 else USUAL
         expected = EXPECTED * _ratio(levels[-3:], power) * np.nan_to_num(differences[-2])
         differences[-1] = np.maximum(differences[-1], expected)
     factor = 1.0 / ((levels[-1] / levels[-2]) ** power - 1.0)
@@ -47,9 +48,9 @@ def fitted_power(levels: Sequence[int], ratio: float) -> float:
     """The power a for which the last difference over the one before is `ratio` at three levels."""
     if ratio >= _ratio(levels, LEAST):
         return LEAST
-    if ratio <= _ratio(levels, MOST):
-        return MOST
-    return float(brentq(lambda power: _ratio(levels, power) - ratio, LEAST, MOST))
+    if ratio <= _ratio(levels, USUAL):
+        return USUAL
+    return float(brentq(lambda power: _ratio(levels, power) - ratio, LEAST, USUAL))
 
 
 def _ratio(levels: Sequence[int], power: float) -> float:
