@@ -28,6 +28,8 @@ LITTLE, MOST = 1e-6, 0.9
 ACCEPTED = 1e-5
 # By how much springs are made stiffer where steps leave most of the penetration time and again, and how often.
 STIFFENED, MOST_STIFFENED = 10.0, 4
+# Part of what is out of balance that a step may leave; beyond, loose rods hang on softer springs; and how often they do.
+SWAYING, MOST_SOFTENED = 0.5, 2
 # How often points that are wrong about a set may change sides; how often in a row all of them may where that leaves no
 # fewer, and what part of them does then.
 MOST_EXCHANGES, PATIENCE, FEWER = 60, 3, 3
@@ -168,13 +170,13 @@ def unilateral_contact(problem: ContactProblem, settled: bool = True, guess: Boo
     if escaping.any():
         return ContactForces(force, escaping, "refused: contact does not hold what nothing else holds", 0)
     flexibility = _soft_springs(problem)
-    hanging = problem.compliance + problem.motion @ flexibility @ problem.motion.T
+    hanging = _hanging(problem, flexibility)
     pushing = PushingForces(_with_springs(hanging, problem), guess)
     multiplier, left = force, np.inf
     outcome, balance = "stagnated: the multipliers did not settle", 0.0
-    largest, size = 0.0, float(np.abs(problem.motion_load).max(initial=0.0))
+    largest, size = 0.0, float(np.abs(problem.motion_load).max(initial=0.0)) or _closing_force(problem)
     active = tried = np.empty(0, dtype=bool)
-    slow = stiffened = 0
+    slow = stiffened = swaying = softened = 0
     for _ in range(MOST_STEPS):
         hung = problem.gap + problem.motion @ (motion + flexibility @ problem.motion_load)
         found = pushing.closing(hung - multiplier / problem.spring)
@@ -188,7 +190,7 @@ def unilateral_contact(problem: ContactProblem, settled: bool = True, guess: Boo
         # Forces of an interference that a loose rod gives way to vanish: what they began with is their measure.
         largest = max(largest, float(force.max(initial=0.0)))
         size = max(size, (np.abs(problem.motion.T) @ force).max(initial=0.0))
-        balance = float(np.abs(unbalanced).max(initial=0.0))
+        balance_before, balance = balance, float(np.abs(unbalanced).max(initial=0.0))
         left_before, left = left, _energy_left(problem, multiplier, before)
         if balance <= (BALANCED if settled else ROUGHLY_BALANCED) * size and (
             not settled or _is_settled(left, left_before)
@@ -201,6 +203,13 @@ def unilateral_contact(problem: ContactProblem, settled: bool = True, guess: Boo
             problem = replace(problem, spring=np.where(problem.rigid, STIFFENED * problem.spring, problem.spring))
             pushing = PushingForces(_with_springs(hanging, problem), pushing.active, pushing.active_sets)
             slow, stiffened, tried = 0, stiffened + 1, np.empty(0, dtype=bool)
+        swaying = swaying + 1 if balance > SWAYING * balance_before else 0
+        if swaying > PATIENCE and softened < MOST_SOFTENED:
+            # Loose rods on springs that are soft themselves need softer ones to hang on.
+            flexibility = STIFFENED * flexibility
+            hanging = _hanging(problem, flexibility)
+            pushing = PushingForces(_with_springs(hanging, problem), pushing.active, pushing.active_sets)
+            swaying, softened = 0, softened + 1
         active_before, active = active, pushing.active
         if settled and np.array_equal(active, active_before) and not np.array_equal(active, tried):
             # The set may be the one in the end: what it answers at once takes the steps many.
@@ -212,6 +221,11 @@ def unilateral_contact(problem: ContactProblem, settled: bool = True, guess: Boo
     if outcome != "converged" and left <= ACCEPTED and balance <= 10.0 * ROUND_OFF * size:
         outcome = "converged"
     return ContactForces(force, motion, outcome, pushing.active_sets)
+
+
+def _hanging(problem: ContactProblem, flexibility: Array) -> Array:
+    """Compliance of the contact points with loose rods on their springs."""
+    return np.asarray(problem.compliance + problem.motion @ flexibility @ problem.motion.T)
 
 
 def _with_springs(compliance: Array, problem: ContactProblem) -> Array:
@@ -234,6 +248,12 @@ def _serving(problem: ContactProblem, active: BoolArray, largest: float, size: f
         and np.abs(unbalanced).max(initial=0.0) <= BALANCED * size
     )
     return (np.maximum(force, 0.0), motion) if serves else None
+
+
+def _closing_force(problem: ContactProblem) -> float:
+    """What would close the largest gap, N: the measure of forces on loose rods that no load acts on."""
+    own = np.diagonal(problem.compliance) + 1.0 / problem.spring
+    return float((np.abs(problem.gap) / own).max(initial=0.0))
 
 
 def _soft_springs(problem: ContactProblem) -> Array:
