@@ -28,7 +28,7 @@ LITTLE, MOST = 1e-6, 0.9
 ACCEPTED = 1e-5
 # By how much springs are made stiffer where steps leave most of the penetration time and again, and how often.
 STIFFENED, MOST_STIFFENED = 10.0, 4
-# Part of what is out of balance that a step may leave; beyond, loose rods hang on softer springs; and how often they do.
+# Part of what is out of balance that a step may leave, or loose rods hang on softer springs; and how often they may.
 SWAYING, MOST_SOFTENED = 0.5, 2
 # How often points that are wrong about a set may change sides; how often in a row all of them may where that leaves no
 # fewer, and what part of them does then.
