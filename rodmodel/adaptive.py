@@ -154,7 +154,8 @@ def solve_to(scene: Scene, tolerance: float) -> AdaptiveSolution:
         at_best = worst.relative * (highest / HIGHEST_LEVEL) ** power
         raised = None
         if len(steps) < MOST_STEPS and (len(steps) < CERTAIN or at_best <= tolerance * HOPELESS):
-            raised = next_meshes(meshes, indicators(solution), pressed_elements(solution), tolerance)
+            step = level_step(highest, worst.relative / tolerance, power)
+            raised = next_meshes(meshes, indicators(solution), pressed_elements(solution), tolerance, step)
         if raised is None:
             outcome = _refusal(worst, highest, at_best)
             return AdaptiveSolution(solution, tolerance, outcome, estimates, tuple(steps))
@@ -205,11 +206,23 @@ def _scale(goal: Goal, values: Mapping[Goal, float]) -> float:
     return max(abs(values[goal]), 1e-3 * alike) or 1.0
 
 
+def level_step(level: int, excess: float, power: float) -> int:
+    """By how much to raise the highest level: as far as its error must fall, but not before two steps tell of it.
+
+    excess : the error over the tolerance
+    """
+    step = LEVEL_STEP
+    while np.isfinite(excess) and level + step < HIGHEST_LEVEL and excess > (1.0 + step / level) ** power:
+        step += LEVEL_STEP
+    return step
+
+
 def next_meshes(
     meshes: Mapping[str, RodMesh],
     shown: Mapping[str, RodIndicators],
     pressed: Mapping[str, BoolArray],
     tolerance: float,
+    level_step: int,
 ) -> dict[str, RodMesh] | None:
     """Raise levels and orders where much energy is in the highest functions; None where all are at the highest.
 
@@ -221,7 +234,7 @@ def next_meshes(
     for budget in (BUDGET * tolerance, 0.1 * BUDGET * tolerance, -1.0):
         # Where little is in the highest functions, but steps still differ, more is raised, and at last everything.
         limits = _limit(over_section, budget), _limit(along, budget)
-        raised = {name: _raised(mesh, shown[name], pressed[name], limits) for name, mesh in meshes.items()}
+        raised = {name: _raised(mesh, shown[name], pressed[name], limits, level_step) for name, mesh in meshes.items()}
         if any(
             (raised[name].levels > mesh.levels).any() or (raised[name].orders > mesh.orders).any()
             for name, mesh in meshes.items()
@@ -230,8 +243,10 @@ def next_meshes(
     return None
 
 
-def _raised(mesh: RodMesh, shown: RodIndicators, pressed: BoolArray, limits: tuple[float, float]) -> RodMesh:
-    levels = mesh.levels + LEVEL_STEP * ((shown.over_section > limits[0]) | pressed)
+def _raised(
+    mesh: RodMesh, shown: RodIndicators, pressed: BoolArray, limits: tuple[float, float], level_step: int
+) -> RodMesh:
+    levels = mesh.levels + level_step * ((shown.over_section > limits[0]) | pressed)
     orders = mesh.orders + ORDER_STEP * (shown.along > limits[1])
     return replace(mesh, levels=np.minimum(levels, HIGHEST_LEVEL), orders=np.minimum(orders, HIGHEST_ORDER))
 

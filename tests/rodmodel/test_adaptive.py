@@ -8,7 +8,7 @@ import pytest
 import rodmodel as rm
 from cases.loader import load_case
 from cases.scene import Scene
-from rodmodel.adaptive import AdaptiveSolution, solve_to
+from rodmodel.adaptive import AdaptiveSolution, level_step, solve_to
 
 STEEL = rm.Material(200e3, 0.3)
 
@@ -88,3 +88,10 @@ def test_rods_that_touch_at_a_point_are_not_said_to_be_known_better_than_they_ar
 def test_tolerances_out_of_reach_are_refused(tolerance):
     with pytest.raises(ValueError, match="tolerance"):
         solve_to(paper("e50-g0"), tolerance)
+
+
+def test_the_next_level_is_as_high_as_the_error_asks_for():
+    assert level_step(2, np.inf, 2.0) == 2  # nothing is known yet
+    assert level_step(4, 2.0, 2.0) == 2  # (6/4)^2 = 2.25
+    assert level_step(4, 3.0, 2.0) == 4  # (8/4)^2 = 4
+    assert level_step(6, 100.0, 2.0) == 2  # there is no level above 8
