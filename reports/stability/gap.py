@@ -103,7 +103,8 @@ def holds(found: Found) -> bool:
 
 SWEEP = Sweep(
     "Gap",
-    "The two cantilevers (E2 = 50 GPa): the gap from −14 mm, an interference nearly as deep as the bars are high, to 15 mm, where they never touch.",
+    "The two cantilevers (E2 = 50 GPa): the gap from −14 mm, an interference nearly as deep as the bars are high, to "
+    "15 mm, where they never touch.",
     GAPS,
     (BEAMS, PLAIN, OURS),
     (
