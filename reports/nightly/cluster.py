@@ -53,7 +53,8 @@ def run_tasks(
     ClusterError
         if the scheduler cannot be reached, has no workers or goes away.
     """
-    logging.getLogger("distributed").setLevel(logging.CRITICAL)  # what matters of it is told by us, once
+    for logger in ("distributed", "distributed.client"):  # Dask gives the second a level of its own
+        logging.getLogger(logger).setLevel(logging.CRITICAL)  # what matters is told by us, once
     with _client(scheduler) as client:
         at_once = _at_once(client)
         cases = {}
