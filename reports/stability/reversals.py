@@ -45,10 +45,10 @@ def _incremental(values: tuple[float, ...]) -> list[float]:
     forces = []
     for value in values:
         now = replace(problem, gap=GAP + value * (problem.gap - GAP))
-        force, _ = ActiveSet(joined, now).forces(np.zeros(len(joined)))
+        force, _ = ActiveSet(joined, now).respond(now.gap, now.motion_load)
         opening = now.gap + now.compliance @ force
         joined = np.where(joined, force > 0.0, opening < 0.0)
-        force, _ = ActiveSet(joined, now).forces(np.zeros(len(joined)))
+        force, _ = ActiveSet(joined, now).respond(now.gap, now.motion_load)
         forces.append(float(force.sum()))
     return forces
 
