@@ -96,7 +96,7 @@ def case_comparisons(
 
 def comparisons_without_reference(case: Case, rod: Quantities) -> tuple[Comparison, ...]:
     """All comparisons of a case whose scene the 3D reference cannot treat, in the order of `case_comparisons`."""
-    reason = "the 3D reference cannot treat this case yet"
+    reason = "the 3D reference cannot treat this case"
     found = [
         untreated(check, extract(rod, check), reason, kind="reference", source=REFERENCE_SOURCE)
         for check in case.compare

@@ -204,7 +204,7 @@ def _case(run: CaseRun, anchor: str, picture: DrawnPicture) -> tuple[dict[str, A
     figures.update(panels)
     counts: dict[str, int] = dict.fromkeys(("pass", "fail", "not resolved"), 0)
     counts.update(Counter(comparison.verdict for comparison in run.comparisons))
-    warnings = [f"The 3D reference cannot treat this case yet. {run.refusal}"] if run.refusal else []
+    warnings = [f"The 3D reference cannot treat this case. {run.refusal}"] if run.refusal else []
     warnings += [
         f"{solver} did not converge: {answer.quantities.outcome}"
         for solver, answer in _solvers(run)

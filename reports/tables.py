@@ -119,7 +119,7 @@ def print_comparison(run: CaseRun | Failure) -> None:
         outcome = "" if answer.quantities.converged else f" [bold red]{answer.quantities.outcome}[/]"
         console.print(f"{_model(answer)}: {_cost(answer)}, {answer.peak_memory:.0f} MB{answer.origin}{outcome}")
     if run.refusal:
-        console.print(f"[yellow]The 3D reference cannot treat this case yet[/]: {escape(run.refusal)}")
+        console.print(f"[yellow]The 3D reference cannot treat this case[/]: {escape(run.refusal)}")
     table = Table(
         "quantity", "of", "value", "against", "reference", "difference", "uncertainty", "tolerance", "verdict"
     )

@@ -257,14 +257,14 @@ def test_without_3d_the_table_says_why(untreated: CaseRun, capsys: pytest.Captur
     print_comparison(untreated)
 
     out = capsys.readouterr().out
-    assert "The 3D reference cannot treat this case yet: rods.ring.centre_line: found an arc" in out
+    assert "The 3D reference cannot treat this case: rods.ring.centre_line: found an arc" in out
     assert "not resolved" in out
 
 
 def test_without_3d_the_page_stands_and_says_why(untreated: CaseRun) -> None:
     page = site.render([untreated], {"ring": site.DrawnPicture("", 0, 0, "", "not drawn")})
 
-    assert "The 3D reference cannot treat this case yet. rods.ring.centre_line: found an arc" in page
+    assert "The 3D reference cannot treat this case. rods.ring.centre_line: found an arc" in page
     assert site.ALONE_CAPTION in page
     assert page.count('class="verdict not-resolved"') >= 3
 
