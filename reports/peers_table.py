@@ -97,7 +97,8 @@ def peers_summary(runs: Sequence[CaseRun | Failure]) -> tuple[str, ...]:
         answered, apart, reasons = 0, [], []
         for run, each in found:
             if each.answer is None or each.answer.outcome != "converged":
-                reasons.append(_sentence(peer, _why(each)).rstrip("."))
+                why = _why(each).rstrip(".")
+                reasons.append(f"It {why}" if why.startswith("cannot") else why)
                 continue
             answered += 1
             for row in run.side_by_side:

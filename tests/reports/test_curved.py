@@ -274,7 +274,8 @@ def test_without_3d_the_rod_model_s_results_are_written(untreated: CaseRun, tmp_
 
     site.write_report([untreated], tmp_path)
 
-    assert {file.name for file in (tmp_path / "results").iterdir()} == {"ring-rod.json", "ring-comparisons.json"}
+    written = {file.name for file in (tmp_path / "results").iterdir()}
+    assert written == {"ring-rod.json", "ring-comparisons.json", "ring-peers.json"}
 
 
 def test_a_case_that_3d_refuses_runs_to_its_end(untreated: CaseRun, monkeypatch: pytest.MonkeyPatch) -> None:
