@@ -11,7 +11,6 @@ from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import brentq
 
 Array = NDArray[np.float64]
 
@@ -50,6 +49,9 @@ def fitted_power(levels: Sequence[int], ratio: float) -> float:
         return LEAST
     if ratio <= _ratio(levels, USUAL):
         return USUAL
+    # Importing it takes longer than importing all of this package.
+    from scipy.optimize import brentq
+
     return float(brentq(lambda power: _ratio(levels, power) - ratio, LEAST, USUAL))
 
 
