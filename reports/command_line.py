@@ -1,4 +1,4 @@
-"""The command `rodcheck`: list, solve, compare, sweep, report, chart, nightly, history, deck, verify and so on.
+"""The command `rodcheck`, whose subcommands `rodcheck --help` lists.
 
 Heavy imports wait until a command needs them. Bad input is answered by one sentence on standard error and
 exit code 2; a verdict other than 'pass', a solver that did not converge or a case that failed by exit code 1. The
