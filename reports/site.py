@@ -271,7 +271,7 @@ def _headline(run: CaseRun) -> list[list[str]]:
             for found in run.comparisons
             if (found.kind, found.quantity, found.of) == ("reference", quantity, of) and found.uncertainty is not None
         ]
-        return f" ± {measure(quantity, known[0])}" if known and answer.model == "reference" else ""
+        return f" ± {100.0 * known[0]:.1g} %" if known and answer.model == "reference" else ""
 
     return [
         [
