@@ -9,6 +9,7 @@ from pathlib import Path
 
 from cases.case import QUANTITIES, Case, Check, Grades, Published, Quantity, RodModelSettings
 from cases.polygon import depth
+from cases.rods import not_beyond_end, require_on_rod
 from cases.scene import Box, Circle, Polygon, Rectangle, Ring, Rod, Scene, SceneError, Section, Vector
 from cases.scene_building import require_found, require_known, scene_from
 from cases.schema import CaseFile, CompareTable, PublishedTable
@@ -166,4 +167,15 @@ def _published(key: str, table: PublishedTable, scene: Scene) -> Published:
         require_found(len(value) > 0 and len(value) % 2 == 0 and rising, f"{key}.value", table.value, remedy)
     else:
         require_found(len(value) == 1, f"{key}.value", table.value, "one value is needed")
-    return Published(table.quantity, of, value, _tolerance(key, table.quantity, table.tolerance), table.source)
+    tolerance = _tolerance(key, table.quantity, table.tolerance)
+    found = Published(table.quantity, of, value, tolerance, table.source, table.position, table.axis)
+    for name, given in (("position", table.position), ("axis", table.axis)):
+        if table.quantity != "deflection":
+            require_found(given is None, f"{key}.{name}", given, "only a deflection has a place and a direction")
+        elif given is None:
+            raise SceneError(f"{key}.{name}", "no such key", "say where on the rod, and along which axis")
+    if table.quantity == "deflection":
+        found = not_beyond_end(found, scene.rod(of))
+    if found.position is not None:
+        require_on_rod(found.position, scene.rod(of), f"{key}.position")
+    return found

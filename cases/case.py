@@ -36,7 +36,7 @@ class QuantityKind:
     relative : whether its tolerance is a fraction (of the value; of a curve's largest value) or a length
     comparable : whether rod and 3D reference may be held against each other by it. The largest bending stress
         is not: it is the stress of a finite element solution at a singular section, and grows without bound.
-    publishable : whether a number or a list of numbers states it
+    publishable : whether a number or a list of numbers states it; of the deflection, one of its components at a place
     """
 
     of: Literal["rod", "contact"]
@@ -51,12 +51,15 @@ QUANTITIES: Mapping[Quantity, QuantityKind] = {
     "contact_centre": QuantityKind("contact", "mm", relative=False),
     "contact_edges": QuantityKind("contact", "mm", relative=False),
     "contact_edges_outer": QuantityKind("contact", "mm", relative=False),
-    "deflection": QuantityKind("rod", "mm", relative=True, publishable=False),
+    "deflection": QuantityKind("rod", "mm", relative=True),
     "bending_moment": QuantityKind("rod", "N mm", relative=True, publishable=False),
     "end_moment_equilibrium": QuantityKind("rod", "N mm", relative=True),
     "max_bending_stress": QuantityKind("rod", "MPa", relative=True, comparable=False),
     "stress_s": QuantityKind("rod", "MPa", relative=True, publishable=False),
 }
+
+
+Axis = Literal["X", "Y", "Z"]
 
 
 # A level or an order: the same everywhere, or by the name of every rod one for each element.
@@ -107,6 +110,8 @@ class Published:
     value : in the quantity's unit; one number, or start and end of each stretch in contact in turn
     tolerance : as in `Check`
     source : where it is printed
+    position : arc length where a deflection is published, mm; None for other quantities
+    axis : global axis along which it is
     """
 
     quantity: Quantity
@@ -114,6 +119,8 @@ class Published:
     value: tuple[float, ...]
     tolerance: float
     source: str
+    position: float | None = None
+    axis: Axis | None = None
 
 
 @dataclass(frozen=True)

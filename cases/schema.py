@@ -10,7 +10,7 @@ from typing import Annotated, Any
 
 from pydantic import Field, PlainValidator, StrictInt, StrictStr, WithJsonSchema
 
-from cases.case import Quantity
+from cases.case import Axis, Quantity
 from cases.tables.centre_lines import CentreLineTable
 from cases.tables.contacts import ContactTable
 from cases.tables.loads import LoadTable
@@ -103,11 +103,16 @@ class PublishedTable(Table):
     """A value printed in a source, as printed."""
 
     quantity: Quantity
-    """Name of the quantity; one that a number or a list of numbers states, so no curve and no stress_s."""
+    """Name of the quantity; not bending_moment and stress_s, which no number states; of the deflection, one component at
+    a place."""
     rod: Text | None = None
     """Name of one of the [rods], for a quantity of a rod."""
     contact: Text | None = None
     """Name of one of the [contacts], for a quantity of a contact pair."""
+    position: Length | None = None
+    """Where on the rod a deflection is published, a length along the rod from its start."""
+    axis: Axis | None = None
+    """Along which global axis it is, "X", "Y" or "Z"."""
     value: Value
     """The value, such as "117.15 MPa"; for contact edges start and end of each stretch in contact, such as
     ["200 mm", "221.71 mm"], as global coordinates."""

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from cases.case import Case, Check
+from cases.case import Case, Check, Published
 from cases.scene import Vector
 from reports.comparison import (
     CURVES,
@@ -19,6 +19,7 @@ from reports.comparison import (
     sequence_estimate,
     untreated,
 )
+from reports.geometry import AXES
 from reports.quantities import Quantities
 from reports.solution import Array, Model
 from reports.truth import SOURCE, IndependentValues, independent_values
@@ -42,7 +43,10 @@ def evaluation_points(case: Case) -> EvaluationPoints:
     OSError, ValueError
         if the file of independent values cannot be read.
     """
-    stations = {} if case.independent is None else independent_values(case.independent, case.scene).stations
+    stations = {} if case.independent is None else dict(independent_values(case.independent, case.scene).stations)
+    for published in case.published:
+        if published.position is not None:
+            stations[published.of] = np.append(stations.get(published.of, np.empty(0)), published.position)
     points = tuple((check.of, check.point) for check in case.compare if check.point is not None)
     return EvaluationPoints(stations, points)
 
@@ -126,19 +130,31 @@ def _against_reference(
 def _against_published(case: Case, rod: Quantities) -> list[Comparison]:
     found = []
     for published in case.published:
-        check = Check(published.quantity, published.of, published.tolerance)
+        point = None if published.position is None else (0.0, 0.0, published.position)
+        check = Check(published.quantity, published.of, published.tolerance, point)
         found.append(
             compare(
                 check,
                 "rod",
-                extract(rod, check),
+                _as_published(rod, published, check),
                 Estimate(np.array(published.value, dtype=float), 0.0),
                 kind="published",
                 source=published.source,
                 outcomes=[rod.outcome],
+                axis=published.axis,
             )
         )
     return found
+
+
+def _as_published(quantities: Quantities, published: Published, check: Check) -> Array:
+    """The values of a published quantity; of a deflection, the one component at the one place that is published."""
+    if published.position is None or published.axis is None:
+        return extract(quantities, check)
+    found = quantities.rod(published.of)
+    nearest = int(np.argmin(np.abs(found.station - published.position)))  # `evaluation_points` asks for it
+    component: Array = found.displacement[AXES.index(published.axis)]
+    return component[[nearest]]
 
 
 def _reference_estimate(check: Check, references: Sequence[Quantities], extrapolate: Extrapolate) -> Estimate:

@@ -13,7 +13,7 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
-from cases.case import QUANTITIES, Check, Quantity
+from cases.case import QUANTITIES, Axis, Check, Quantity
 from cases.scene import Vector
 from reports.solution import Array, Model
 
@@ -65,7 +65,8 @@ class Comparison:
     ----------
     quantity : key of `cases.case.QUANTITIES` and `reports.quantities.DEFINITIONS`
     of : the pair or rod
-    point : (x, y, s), mm, for a stress
+    point : (x, y, s), mm, for a stress and a published deflection
+    axis : global axis of a published deflection
     model : whose value is judged
     kind, source : against what: the 3D reference of this run, an independent 3D value, a published one
     value, reference : the numbers compared; of a curve the two magnitudes where they are farthest apart
@@ -87,6 +88,15 @@ class Comparison:
     tolerance: float
     verdict: Verdict
     reason: str
+    axis: Axis | None = None
+
+    @property
+    def place(self) -> str:
+        """The point and the axis in words; '' where there are none."""
+        if self.point is None:
+            return ""
+        point = f"({', '.join(f'{coordinate:g}' for coordinate in self.point)})"
+        return point if self.axis is None else f"{point} along {self.axis}"
 
 
 def magnitude(values: Array) -> Array:
@@ -131,6 +141,7 @@ def compare(
     kind: Kind,
     source: str,
     outcomes: Sequence[str] = (),
+    axis: Axis | None = None,
 ) -> Comparison:
     """Hold a value, shape (n,) or (3, n), against a reference of the same quantity.
 
@@ -138,6 +149,7 @@ def compare(
     ----------
     check : what is compared and to which tolerance
     outcomes : of the solvers whose numbers stand on either side
+    axis : where the value is one component of a deflection
 
     Notes
     -----
@@ -159,7 +171,7 @@ def compare(
         uncertainty = None if reference.uncertainty is None else _ratio(reference.uncertainty, scale)
         verdict, reason = judge(difference, uncertainty, check.tolerance, outcomes)
         shown = value, reference.value
-        if check.quantity in CURVES:
+        if check.quantity in CURVES and axis is None:
             worst = int(np.argmax(apart))
             shown = magnitude(value)[worst : worst + 1], magnitude(reference.value)[worst : worst + 1]
     return Comparison(
@@ -176,6 +188,7 @@ def compare(
         tolerance=check.tolerance,
         verdict=verdict,
         reason=reason,
+        axis=axis,
     )
 
 

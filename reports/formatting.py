@@ -70,11 +70,9 @@ def measure(quantity: Quantity, value: float | None) -> str:
 
 
 def title(comparison: Comparison) -> str:
-    """What is compared: quantity, rod or pair, and the point where there is one."""
+    """What is compared: quantity, rod or pair, and the place where there is one."""
     name = f"{DEFINITIONS[comparison.quantity].title}, {comparison.of}"
-    if comparison.point is None:
-        return name
-    return f"{name} at ({', '.join(f'{coordinate:g}' for coordinate in comparison.point)})"
+    return f"{name} at {comparison.place}" if comparison.place else name
 
 
 def opposite(second: RodFace | Ground) -> str:

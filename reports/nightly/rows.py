@@ -53,7 +53,7 @@ class Row:
     Attributes
     ----------
     of : the pair or rod, with the arc length of a clamp (mm)
-    point : (x, y, s) of a stress, mm, as text; else ''
+    point : (x, y, s) of a stress, mm, and of a published deflection with its axis, as text; else ''
     solver : rod model, 3D, or the name of a solver that is not of this project
     against, source : kind and words of the reference, as in `Comparison`; 'beside' for numbers that carry no verdict
     relative : whether difference, uncertainty and tolerance are fractions of the reference's largest magnitude; else
@@ -169,7 +169,7 @@ def _compared(row: Callable[..., Row], found: Comparison, spent: Mapping[str, Sp
     return row(
         quantity=found.quantity,
         of=found.of,
-        point="" if found.point is None else f"({', '.join(f'{coordinate:g}' for coordinate in found.point)})",
+        point=found.place,
         solver=solver,
         against=found.kind,
         source=found.source,

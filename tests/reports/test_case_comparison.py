@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
-from cases.case import Check
+from cases.case import Check, Published
 from cases.loader import library_names, load_case
-from reports.case_comparison import evaluation_points, extract
+from reports.case_comparison import comparisons_without_reference, evaluation_points, extract
+from reports.formatting import title
 from reports.quantities import DEFINITIONS
 from reports.runner import CaseRun
 from reports.truth import independent_values
@@ -56,6 +59,25 @@ def test_a_deflection_is_held_against_the_independent_one_at_its_own_stations(ca
 
     largest = np.abs(rod.displacement[1, nearest] - expected).max() / np.abs(expected).max()
     assert found.difference == pytest.approx(largest)
+
+
+def test_a_published_deflection_is_held_against_its_component_at_its_place(case_run: CaseRun) -> None:
+    published = Published("deflection", "upper", (-2.0,), 0.5, "a book", position=137.0, axis="Y")
+    case = replace(case_run.case, published=(published,))
+    points = evaluation_points(case)
+    stations = np.linspace(0.0, 300.0, 301)
+    rod = replace(
+        case_run.rod.quantities.rod("upper"), station=stations, displacement=np.outer([0.0, -0.01, 1.0], stations)
+    )
+    quantities = replace(case_run.rod.quantities, rods=(case_run.rod.quantities.rod("lower"), rod))
+
+    alone = comparisons_without_reference(replace(case, compare=(), independent=None), quantities)
+
+    assert 137.0 in points.stations["upper"]
+    (found,) = alone
+    assert found.value == pytest.approx((-1.37,))
+    assert found.difference == pytest.approx(0.63 / 2.0)
+    assert title(found) == "Deflection, upper at (0, 0, 137) along Y"
 
 
 @pytest.mark.parametrize("name", [name for name in library_names() if name.startswith("two-cantilevers")])
