@@ -104,13 +104,23 @@ class Cache:
         return found
 
     def keep(self, model: str, question: object, value: object) -> None:
-        """Keep the result of a question."""
-        path = self._path(model, question)
-        body = json.dumps({"of": path.name, "date": datetime.now(UTC).date().isoformat(), "value": to_plain(value)})
+        """Keep the result of a question; a folder that cannot be written is noted."""
         try:
-            write_whole(path, f"{MAGIC} {hashlib.sha256(body.encode()).hexdigest()}\n{body}\n")
+            self.write(model, question, value)
         except OSError as error:
             self._unusable("write to", error)
+
+    def write(self, model: str, question: object, value: object) -> None:
+        """Keep the result of a question.
+
+        Raises
+        ------
+        OSError
+            if it cannot be written.
+        """
+        path = self._path(model, question)
+        body = json.dumps({"of": path.name, "date": datetime.now(UTC).date().isoformat(), "value": to_plain(value)})
+        write_whole(path, f"{MAGIC} {hashlib.sha256(body.encode()).hexdigest()}\n{body}\n")
 
     def clean(self) -> None:
         """Remove what killed processes left behind, and entries that have not been asked for in a long time."""

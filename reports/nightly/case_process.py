@@ -13,7 +13,7 @@ from dataclasses import replace
 from threading import Thread
 
 from reports.cache import Cache
-from reports.nightly.task import Task, version
+from reports.nightly.task import Task, on_this_machine, version
 from reports.peers import ask_peers, stations_of
 from reports.processes import failure_reason
 from reports.runner import CaseRun, Failure, run_case
@@ -46,7 +46,7 @@ def _answer(task: Task) -> CaseRun | Failure:
         )
     cache = None if task.cache is None else Cache(task.cache)
     try:
-        run = run_case(task.case, lambda _: None, cache)
+        run = run_case(on_this_machine(task.case), lambda _: None, cache)
         if task.peers:
             run = replace(run, peers=ask_peers(task.case.scene, stations_of(run.rod.quantities), cache=cache))
     except Exception as error:  # noqa: BLE001 (whatever went wrong, it is this case's alone)

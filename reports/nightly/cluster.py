@@ -73,7 +73,7 @@ def run_tasks(
                 raise ClusterError("the scheduler went away; what was finished is kept, so start again to go on")
             error = future.exception()
             if error is None:
-                yield future.result()
+                yield replace(future.result(), case=case)  # the worker's own has paths of the worker's machine
             else:
                 yield Failure(case, _reason(error))
             future.release()

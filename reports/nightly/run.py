@@ -16,9 +16,11 @@ from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
 from cases.case import Case
+from cases.loader import library_names
 from reports.nightly.cluster import run_tasks
 from reports.nightly.drift import LAST_RUNS, Drift, drifts
 from reports.nightly.history import clean, has_run, read_history, write_run
+from reports.nightly.pages import Pages, write_pages
 from reports.nightly.rows import Row, rows_of, this_night
 from reports.nightly.summary import drift_lines, summary
 from reports.nightly.task import Limits, Task, version
@@ -38,7 +40,7 @@ class Outcome:
 
     Attributes
     ----------
-    as_expected : every verdict is a pass, every case ran to its end, and nothing moved
+    as_expected : every verdict is a pass, every case ran to its end, every page's claim holds, and nothing moved
     summary : lines of plain text
     """
 
@@ -59,6 +61,8 @@ def nightly(
 ) -> Outcome:
     """Run cases and write `index.html`, `results`, `history` and `summary.txt` into a folder that is locked.
 
+    With the whole library come the pages of verification and stability.
+
     Raises
     ------
     ClusterError
@@ -69,10 +73,13 @@ def nightly(
     begin = time.perf_counter()
     clean(output / HISTORY)
     unfinished = Unfinished(output / "unfinished", datetime.now(UTC))
+    tasks = [Task(case, cache, peers, limits, 1, version()) for case in cases]
+    if has_run(output / HISTORY, unfinished.run) and not all(unfinished.find(task) for task in tasks):
+        # It was killed after its history was written, and now other cases are asked, or another code: another run.
+        unfinished.end()
+        unfinished = Unfinished(output / "unfinished", datetime.now(UTC))
     history = read_history(output / HISTORY)
     earlier = history.latest([case.name for case in cases], LOOKED_BACK, besides=unfinished.run)
-
-    tasks = [Task(case, cache, peers, limits, 1, version()) for case in cases]
     runs = _run_all(tasks, unfinished, scheduler, _expected(earlier))
 
     night = this_night(unfinished.run, datetime.now(UTC))
@@ -80,20 +87,24 @@ def nightly(
     moved = drifts(rows, earlier)
     if not has_run(output / HISTORY, night.run):
         write_run(output / HISTORY, rows)
+    whole_library = {case.name for case in cases} >= set(library_names())
+    pages = write_pages(output) if whole_library else Pages()
     notes = [*history.notes, *unfinished.notes]
     notes += [note for run in runs if isinstance(run, CaseRun) for note in run.notes]
     text = summary(
         runs,
         moved,
         night,
+        missed=pages.missed,
         earlier=len({row.run for row in earlier}),
         notes=list(dict.fromkeys(notes)),
         seconds=time.perf_counter() - begin,
     )
-    write_report(runs, output, moved=drift_lines(moved))
+    write_report(runs, output, pages.files, drift_lines(moved))
     write_whole(output / "summary.txt", text)
     unfinished.end()
-    return Outcome(tuple(runs), tuple(moved), not moved and all(passed(run) for run in runs), text)
+    as_expected = not moved and not pages.missed and all(passed(run) for run in runs)
+    return Outcome(tuple(runs), tuple(moved), as_expected, text)
 
 
 def _expected(earlier: Sequence[Row]) -> dict[str, float]:
@@ -112,7 +123,7 @@ def _run_all(
     tasks: Sequence[Task], unfinished: Unfinished, scheduler: str | None, expected: Mapping[str, float]
 ) -> list[CaseRun | Failure]:
     """What came of every case, in their order; cases that the unfinished run has are not run again."""
-    finished = {task.case.name: unfinished.find(task.case, task.peers) for task in tasks}
+    finished = {task.case.name: unfinished.find(task) for task in tasks}
     waiting = [task for task in tasks if finished[task.case.name] is None]
     usual = sum(expected.values()) / len(expected) if expected else 1.0
     console = Console(stderr=True)
@@ -130,7 +141,7 @@ def _run_all(
         bar = bars.add_task("cases", total=total, done=done, of=len(tasks))
         for run in run_tasks(waiting, scheduler, expected) if waiting else ():
             task = next(task for task in waiting if task.case.name == run.case.name)
-            unfinished.keep(run, task.peers)
+            unfinished.keep(run, task)
             finished[run.case.name] = run
             done += 1
             bars.update(bar, advance=expected.get(run.case.name, usual), done=done, description=run.case.name)

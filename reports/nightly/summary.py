@@ -37,14 +37,15 @@ def not_passed(runs: Sequence[CaseRun | Failure]) -> list[str]:
     return lines
 
 
-def headline(runs: Sequence[CaseRun | Failure], drifts: Sequence[Drift]) -> str:
+def headline(runs: Sequence[CaseRun | Failure], missed: Sequence[str], drifts: Sequence[Drift]) -> str:
     """The whole run in one line."""
     done = [run for run in runs if isinstance(run, CaseRun)]
     counts = Counter(found.verdict for run in done for found in run.comparisons)
     verdicts = ", ".join(f"{counts[verdict]} {verdict}" for verdict in VERDICTS if counts[verdict])
     missing = f", {len(runs) - len(done)} not run" if len(done) < len(runs) else ""
     moved = f"{len(drifts)} moved" if drifts else "nothing moved"
-    return f"{_counted(len(runs), 'case')}{missing}; {verdicts or 'no verdicts'}; {moved}"
+    pages = f"; {len(missed)} missed on the pages beside the report" if missed else ""
+    return f"{_counted(len(runs), 'case')}{missing}; {verdicts or 'no verdicts'}{pages}; {moved}"
 
 
 def drift_lines(drifts: Sequence[Drift]) -> list[str]:
@@ -57,6 +58,7 @@ def summary(
     drifts: Sequence[Drift],
     night: Night,
     *,
+    missed: Sequence[str],
     earlier: int,
     notes: Sequence[str],
     seconds: float,
@@ -65,16 +67,18 @@ def summary(
 
     Parameters
     ----------
+    missed : what does not hold on the pages beside the report, a line each
     earlier : number of runs in the history before this one
     seconds : wall-clock time since this process began the run, or went on with it
     """
     commit = f", commit {night.commit}" if night.commit else ""
     against = f"drift against {_counted(earlier, 'earlier run')}" if earlier else "no earlier run to tell drift by"
     lines = [
-        f"rodcheck nightly: {headline(runs, drifts)}",
+        f"rodcheck nightly: {headline(runs, missed, drifts)}",
         f"run {night.run}{commit}, {night.machine}, {seconds / 60.0:.1f} min; {against}",
     ]
-    for heading, found in (("Not passed", not_passed(runs)), ("Moved", drift_lines(drifts)), ("Notes", list(notes))):
+    not_held = [*not_passed(runs), *missed]
+    for heading, found in (("Not passed", not_held), ("Moved", drift_lines(drifts)), ("Notes", list(notes))):
         if found:
             lines += ["", f"{heading}:", *(f"- {line}" for line in found[:MOST_LINES])]
             if len(found) > MOST_LINES:

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import hashlib
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from cases.case import Case
+from cases.loader import TRUTH
 from reports.code_version import code_version
 from reports.peers import PEERS
 
@@ -45,5 +47,13 @@ class Task:
 
 
 def version() -> str:
-    """Fingerprint of all code that a case's answer and its comparison come from."""
-    return code_version("reports.runner", "reports.nightly.case_process", *PEERS.values())
+    """Fingerprint of all code that a case's answer and its comparison come from, and of the independent values."""
+    digest = hashlib.sha256(code_version("reports.runner", "reports.nightly.case_process", *PEERS.values()).encode())
+    for path in sorted(TRUTH.glob("*.json")):
+        digest.update(f"\n{path.name} ".encode() + hashlib.sha256(path.read_bytes()).digest())
+    return digest.hexdigest()
+
+
+def on_this_machine(case: Case) -> Case:
+    """A case that came from another machine, where rodcheck may lie in another folder."""
+    return case if case.independent is None else replace(case, independent=TRUTH / case.independent.name)

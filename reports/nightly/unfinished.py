@@ -13,10 +13,9 @@ from datetime import UTC, datetime, timedelta
 from importlib import import_module
 from pathlib import Path
 
-from cases.case import Case
 from reports.cache import Cache
 from reports.comparison import Comparison
-from reports.nightly.task import version
+from reports.nightly.task import Task
 from reports.peers import PeerRun, SideBySide
 from reports.runner import KINDS, CaseRun, Failure
 from reports.store import write_whole
@@ -82,33 +81,38 @@ class Unfinished:
         """What the user should know of the folder, a sentence each."""
         return tuple(note.replace("cache:", "unfinished run:", 1) for note in self._cache.notes)
 
-    def find(self, case: Case, peers: bool) -> CaseRun | Failure | None:
-        """What came of a case, if it is finished."""
+    def find(self, task: Task) -> CaseRun | Failure | None:
+        """What came of a case, if it is finished; a failure counts under the same limits alone."""
         kinds = (*KINDS, Comparison, SideBySide, PeerRun, import_module("reference3d.peers.answer").PeerAnswer)
-        kept = self._cache.find("case", self._question(case, peers), kinds)
-        if kept is None:
-            return None
-        what, *content = kept.value
-        return Failure(case, *content) if what == "failed" else CaseRun(case, *content)
+        kept = self._cache.find("case", self._question(task), kinds)
+        if kept is not None:
+            return CaseRun(task.case, *kept.value)
+        kept = self._cache.find("failure", (*self._question(task), task.limits), ())
+        return None if kept is None else Failure(task.case, kept.value)
 
-    def keep(self, run: CaseRun | Failure, peers: bool) -> None:
-        """Keep what came of a case."""
+    def keep(self, run: CaseRun | Failure, task: Task) -> None:
+        """Keep what came of a case.
+
+        Raises
+        ------
+        OSError
+            if it cannot be written.
+        """
         if isinstance(run, Failure):
-            value: tuple[object, ...] = ("failed", run.reason)
+            self._cache.write("failure", (*self._question(task), task.limits), run.reason)
         else:
-            value = ("done", run.rod, run.references, run.comparisons, run.refusal, run.side_by_side)
-            value = (*value, run.peers, run.notes)
-        self._cache.keep("case", self._question(run.case, peers), value)
+            value = (run.rod, run.references, run.comparisons, run.refusal, run.side_by_side, run.peers, run.notes)
+            self._cache.write("case", self._question(task), value)
 
     def end(self) -> None:
         """Forget the run: all that it had to write is written."""
         self._name.unlink(missing_ok=True)
         shutil.rmtree(self._folder, ignore_errors=True)
 
-    def _question(self, case: Case, peers: bool) -> tuple[object, ...]:
+    def _question(self, task: Task) -> tuple[object, ...]:
         """All that the answer to a case depends on in this run."""
-        values = "" if case.independent is None else case.independent.read_text(encoding="utf-8")
-        return self.run, version(), replace(case, independent=None), values, peers
+        values = "" if task.case.independent is None else task.case.independent.name
+        return self.run, task.version, replace(task.case, independent=None), values, task.peers
 
 
 def _begun(name: Path, now: datetime) -> str | None:

@@ -19,7 +19,11 @@ from reports.nightly import run as nightly_run
 from reports.nightly.history import read_history
 from reports.nightly.task import Task
 from reports.nightly.unfinished import locked
+from reports.processes import ProcessFailed
 from reports.runner import CaseRun, Failure
+from reports.store import write_whole
+from reports.verification import registry as checks
+from reports.verification.check import Outcome, Reference
 
 CASE = "two-cantilevers-e20-g0"
 Answered = Callable[..., None]
@@ -39,7 +43,7 @@ def answered(monkeypatch: pytest.MonkeyPatch) -> Answered:
 
         monkeypatch.setattr(nightly_run, "run_tasks", run_tasks)
 
-    monkeypatch.setattr(nightly_run, "write_report", lambda _runs, output, moved: output / "index.html")
+    monkeypatch.setattr(nightly_run, "write_report", lambda _runs, output, _pages, _moved: output / "index.html")
     return set_answer
 
 
@@ -130,6 +134,82 @@ def test_a_run_that_ends_after_its_history_is_written_writes_it_once(
     assert list((tmp_path / "history").iterdir()) == [first]
 
 
+def test_other_cases_after_a_run_whose_history_is_written_are_another_run(
+    tmp_path: Path, case_run: CaseRun, answered: Answered, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    answered(lambda case: replace(passing(case_run), case=case))
+    options = ["--no-peers", "--no-cache", "--output", str(tmp_path)]
+
+    def killed(*_: object, **__: object) -> None:
+        raise KeyboardInterrupt
+
+    with monkeypatch.context() as patched:
+        patched.setattr(nightly_run, "write_report", killed)
+        command_line.run(["nightly", CASE, *options])
+
+    assert command_line.run(["nightly", "crossed-cantilevers", *options]) == 0
+
+    assert read_history(tmp_path / "history").cases() == ["crossed-cantilevers", CASE]
+
+
+def test_an_answer_that_cannot_be_kept_ends_the_run_at_once(
+    tmp_path: Path,
+    case_run: CaseRun,
+    answered: Answered,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    """Computing on would end without a history, and with nothing kept."""
+    command = ["nightly", CASE, "crossed-cantilevers", "--no-peers", "--no-cache", "--output", str(tmp_path)]
+    asked = []
+
+    def answer(case: Case) -> CaseRun:
+        asked.append(case.name)
+        return replace(passing(case_run), case=case)
+
+    def full(path: Path, _text: str) -> None:
+        if asked[1:]:
+            raise OSError(errno.ENOSPC, "No space left on device", str(path))
+        write_whole(path, _text)
+
+    answered(answer)
+    with monkeypatch.context() as patched:
+        patched.setattr("reports.cache.write_whole", full)
+        code = command_line.run(command)
+
+    assert code == 2
+    assert "No space left on device" in capsys.readouterr().err
+    assert command_line.run(command) == 0
+    assert asked == [CASE, "crossed-cantilevers", "crossed-cantilevers"]
+
+
+def test_the_whole_library_has_its_pages_and_what_they_miss_is_said(
+    tmp_path: Path,
+    case_run: CaseRun,
+    answered: Answered,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    answered(lambda case: replace(passing(case_run), case=case))
+    monkeypatch.setattr(nightly_run, "library_names", lambda: (CASE,))
+    check = next(iter(checks.CHECKS.values()))
+    missed = Outcome(replace(check, levels=(1,), at_level=1), Reference(2.0), (3.0,))
+    monkeypatch.setattr(checks, "verify", lambda: {check.name: missed})
+    monkeypatch.setattr("reports.verification.page.write_verification", lambda *_: tmp_path / "verification.html")
+
+    def failing() -> None:
+        raise ProcessFailed("it broke")
+
+    monkeypatch.setattr("reports.stability.registry.carry_out", failing)
+    code = command_line.run(["nightly", CASE, "--no-peers", "--no-cache", "--output", str(tmp_path)])
+
+    lines = capsys.readouterr().out.splitlines()
+    assert code == 1
+    assert lines[0].endswith("; 2 missed on the pages beside the report; nothing moved")
+    assert any(line.startswith(f"- verification: {check.name}: fail: error 50 %") for line in lines)
+    assert "- stability: not run: it broke" in lines
+
+
 @pytest.mark.parametrize(
     "arguments",
     [
@@ -195,7 +275,7 @@ def test_a_killed_run_goes_on_where_it_was(tmp_path: Path, tiny_files: tuple[Pat
     output = tmp_path / "output"
     code = (
         "import sys, reports.nightly.run as run; from reports.command_line import main\n"
-        "run.write_report = lambda runs, output, moved: None  # drawing takes longer than all the rest\n"
+        "run.write_report = lambda *_: None  # drawing takes longer than all the rest\n"
         "main()"
     )
     command = [sys.executable, "-c", code, "nightly", *map(str, tiny_files)]

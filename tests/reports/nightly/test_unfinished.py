@@ -12,10 +12,15 @@ import numpy as np
 import pytest
 
 from cases.case import Case
+from reports.nightly.task import Limits, Task
 from reports.nightly.unfinished import Busy, Unfinished, locked
 from reports.runner import CaseRun, Failure
 
 NOW = datetime(2026, 1, 1, 2, tzinfo=UTC)
+
+
+def task_of(case: Case) -> Task:
+    return Task(case, None, False, Limits(None, 60.0), 1, "version")
 
 
 def test_a_folder_is_for_one_run_at_a_time(tmp_path: Path) -> None:
@@ -45,38 +50,52 @@ def test_a_killed_process_leaves_no_lock(tmp_path: Path) -> None:
 
 def test_finished_cases_come_back_in_the_same_run(tmp_path: Path, case_run: CaseRun, tiny: Case) -> None:
     begun = Unfinished(tmp_path, NOW)
-    begun.keep(case_run, peers=False)
-    begun.keep(Failure(tiny, "too slow"), peers=False)
+    asked = task_of(case_run.case)
+    begun.keep(case_run, asked)
+    begun.keep(Failure(tiny, "too slow"), task_of(tiny))
 
     again = Unfinished(tmp_path, NOW + timedelta(hours=1))
-    found = again.find(case_run.case, peers=False)
+    found = again.find(asked)
 
     assert again.run == begun.run
-    assert again.find(tiny, peers=False) == Failure(tiny, "too slow")
+    assert again.find(task_of(tiny)) == Failure(tiny, "too slow")
     assert isinstance(found, CaseRun)
     assert found.comparisons == case_run.comparisons
     np.testing.assert_array_equal(
         found.rod.quantities.rods[0].displacement, case_run.rod.quantities.rods[0].displacement
     )
-    assert again.find(case_run.case, peers=True) is None
+    assert again.find(replace(asked, peers=True)) is None
+    assert again.find(replace(asked, version="another")) is None
+
+
+def test_what_failed_is_tried_again_under_other_limits_and_what_was_done_is_kept(
+    tmp_path: Path, case_run: CaseRun, tiny: Case
+) -> None:
+    unfinished = Unfinished(tmp_path, NOW)
+    unfinished.keep(case_run, task_of(case_run.case))
+    unfinished.keep(Failure(tiny, "too slow"), task_of(tiny))
+    more = Limits(None, 120.0)
+
+    assert unfinished.find(replace(task_of(tiny), limits=more)) is None
+    assert isinstance(unfinished.find(replace(task_of(case_run.case), limits=more)), CaseRun)
 
 
 def test_another_case_of_the_same_name_is_not_finished(tmp_path: Path, tiny: Case) -> None:
     unfinished = Unfinished(tmp_path, NOW)
-    unfinished.keep(Failure(tiny, "too slow"), peers=False)
+    unfinished.keep(Failure(tiny, "too slow"), task_of(tiny))
 
-    assert unfinished.find(replace(tiny, compare=()), peers=False) is None
+    assert unfinished.find(task_of(replace(tiny, compare=()))) is None
 
 
 @pytest.mark.parametrize("later", [timedelta(hours=21), timedelta(hours=-1)])
 def test_a_run_of_another_night_is_not_gone_on_with(tmp_path: Path, tiny: Case, later: timedelta) -> None:
     begun = Unfinished(tmp_path, NOW)
-    begun.keep(Failure(tiny, "too slow"), peers=False)
+    begun.keep(Failure(tiny, "too slow"), task_of(tiny))
 
     again = Unfinished(tmp_path, NOW + later)
 
     assert again.run != begun.run
-    assert again.find(tiny, peers=False) is None
+    assert again.find(task_of(tiny)) is None
     assert [path.name for path in tmp_path.iterdir()] == ["run.json"]
 
 

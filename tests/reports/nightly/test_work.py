@@ -15,9 +15,11 @@ import psutil
 import pytest
 
 from cases.case import Case
+from cases.loader import TRUTH
 from reports.nightly import work
+from reports.nightly.case_process import _answer
 from reports.nightly.cluster import run_tasks
-from reports.nightly.task import Limits, Task
+from reports.nightly.task import Limits, Task, version
 from reports.nightly.work import ProcessLost, run_in_process
 from reports.runner import Failure
 
@@ -116,6 +118,22 @@ def test_a_case_ends_with_the_process_that_asked_for_it(task: Task) -> None:
         process.communicate(pickle.dumps(task))  # which closes its standard input, as a death of this process would
 
     assert process.returncode == -signal.SIGKILL
+
+
+def test_independent_values_are_those_of_the_worker_s_own_folder(task: Task, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The path that a task brings is of the machine that asks."""
+    read = []
+
+    def run_case(case: Case, *_: object) -> Failure:
+        assert case.independent is not None
+        read.append(case.independent.read_text(encoding="utf-8"))
+        return Failure(case, "read")
+
+    monkeypatch.setattr("reports.nightly.case_process.run_case", run_case)
+    elsewhere = replace(task.case, independent=Path("/elsewhere/cases/truth/e50_g0.json"))
+    _answer(replace(task, case=elsewhere, version=version()))
+
+    assert read == [(TRUTH / "e50_g0.json").read_text(encoding="utf-8")]
 
 
 def test_a_killed_process_is_told_apart_from_one_that_fails(case_process: Processes, task: Task) -> None:

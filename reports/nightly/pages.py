@@ -1,0 +1,63 @@
+"""The pages of verification and stability, which come with a nightly run over the whole library."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from reports.processes import ProcessFailed
+from reports.stability import page as stability
+from reports.stability import registry as sweeps
+from reports.verification import page as verification
+from reports.verification import registry as checks
+from reports.verification.wording import relative
+
+
+@dataclass(frozen=True)
+class Pages:
+    """What came of them.
+
+    Attributes
+    ----------
+    files : names of those that were written
+    missed : checks and claims that do not hold, and pages that could not be made, a line each
+    """
+
+    files: tuple[str, ...] = ()
+    missed: tuple[str, ...] = ()
+
+
+def write_pages(output: Path) -> Pages:
+    """Carry out all checks and sweeps, each lot in a process of its own, and write their pages into a folder.
+
+    Raises
+    ------
+    OSError
+        if one cannot be written.
+    """
+    files, missed = [], []
+    for name, write in (("verification", _write_verification), ("stability", _write_stability)):
+        try:
+            path, lines = write(output)
+        except ProcessFailed as error:
+            missed.append(f"{name}: not run: {error}")
+        else:
+            files.append(path.name)
+            missed += [f"{name}: {line}" for line in lines]
+    return Pages(tuple(files), tuple(missed))
+
+
+def _write_verification(output: Path) -> tuple[Path, list[str]]:
+    outcomes = checks.verify()
+    missed = [
+        f"{name}: {found.verdict}: error {relative(found.error)}, tolerance {relative(found.check.tolerance)}"
+        for name, found in outcomes.items()
+        if found.verdict != "pass"
+    ]
+    return verification.write_verification(checks.GROUPS, outcomes, output), missed
+
+
+def _write_stability(output: Path) -> tuple[Path, list[str]]:
+    found = sweeps.carry_out()
+    missed = [f"{name}: does not hold" for name, each in found.found.items() if not sweeps.BY_NAME[name].holds(each)]
+    return stability.write_stability(found, output), missed
