@@ -21,6 +21,8 @@ _Array = NDArray[np.float64]
 
 # Least sine of the angle between `up` and the tangent where e2 follows `up`: nearer, the frame whirls.
 _LEAST_OFF = 0.02
+# Points of a spline, whose length may have to be sought on 8,000 places between every two of them.
+MOST_POINTS = 1000
 # |r'| by the length of the chords is about 1; a spline this slow has a cusp.
 _LEAST_SPEED = 1e-3
 # What pieces of a path may be off where they meet, written with rounded numbers: share of the length; rad.
@@ -154,6 +156,8 @@ class Spline:
         # Points often come as an array.
         object.__setattr__(self, "points", tuple(tuple(map(float, point)) for point in self.points))
         require(len(self.points) >= 3, "points", f"{len(self.points)} points", "a spline needs at least three")
+        remedy = f"{MOST_POINTS} at most are taken; several splines make a path"
+        require(len(self.points) <= MOST_POINTS, "points", f"{len(self.points)} points", remedy)
         for number, point in enumerate(self.points, 1):
             require_finite(point, f"points #{number}")
         for number, (point, following) in enumerate(pairwise(self.points), 2):

@@ -12,18 +12,23 @@ from pydantic_core import ErrorDetails
 from cases.schema import CaseFile, case_schema
 from cases.wording import listed, nearest, shown
 
+# Problems of a file that are put into words; the others are counted.
+_WORDED = 100
+
 
 class FormError(Exception):
     """A file that has not the form of a case.
 
     Attributes
     ----------
-    sentences : what is wrong with which key, the most helpful first
+    sentences : what is wrong with which key, the most helpful first; not of every key where very many are wrong
+    count : of all that is wrong
     """
 
-    def __init__(self, sentences: list[str]) -> None:
+    def __init__(self, sentences: list[str], count: int) -> None:
         super().__init__(*sentences)
         self.sentences = sentences
+        self.count = count
 
 
 def checked_form(content: dict[str, Any]) -> CaseFile:
@@ -38,7 +43,8 @@ def checked_form(content: dict[str, Any]) -> CaseFile:
         return CaseFile.model_validate(content)
     except ValidationError as error:
         problems = error.errors(include_url=False)
-    raise FormError(_sentences(problems))
+    sentences = _sentences(problems[:_WORDED])
+    raise FormError(sentences, len(sentences) + max(0, len(problems) - _WORDED))
 
 
 @cache

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import Annotated, Any
 
-from pydantic import Field, PlainValidator, StrictInt, StrictStr, WithJsonSchema
+from pydantic import Field, PlainValidator, StrictInt, WithJsonSchema
 
 from cases.case import Axis, Quantity
 from cases.tables.centre_lines import CentreLineTable
@@ -20,10 +20,12 @@ from cases.tables.supports import BedTable, JointTable, SupportTable
 from cases.tables.values import (
     ONLY_NAMES,
     Length,
+    Lines,
     Name,
     Point,
     Table,
     Text,
+    Title,
     Tolerance,
     Value,
 )
@@ -129,9 +131,9 @@ class CaseFile(Table):
     accelerations are never bare. A key [rods.NAME] is a table of its own for every name.
     """
 
-    title: Text
-    """One line that says what the case is."""
-    description: StrictStr = ""
+    title: Title
+    """One line that says what the case is, of 200 characters at most."""
+    description: Lines = ""
     """A paragraph about the case."""
     independent: Text | None = None
     """Name of a file in cases/truth with 3D values made outside this project."""

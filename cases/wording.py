@@ -24,3 +24,9 @@ def shown(value: object) -> str:
         return "a table"
     text = json.dumps(value, ensure_ascii=False, default=str).replace("NaN", "nan").replace("Infinity", "inf")
     return text if len(text) <= 60 else text[:57] + "..."
+
+
+def in_one_line(text: str, longest: int = 500) -> str:
+    """A sentence for a terminal: no control characters whatever it quotes, and without its middle if it is too long."""
+    text = text if len(text) <= longest else f"{text[: longest // 2]} ... {text[-longest // 2 :]}"
+    return "".join(each if each.isprintable() else ascii(each)[1:-1] for each in text)

@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+import unicodedata
 from typing import Annotated, Any
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, StrictStr, WithJsonSchema
+from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field, StrictStr, WithJsonSchema
 from typing_extensions import TypeAliasType
 
 from cases.units import EXAMPLES, LARGEST, NEVER_BARE, QUANTITY_PATTERN, Unit, UnitError, to_unit
 
 _WITH_UNIT = {"type": "string", "pattern": QUANTITY_PATTERN}
 _FORMS = [{"type": "number"}, _WITH_UNIT]
+# Controls of Unicode that write what follows backwards, so that a reader sees another text.
+_TURNS_AROUND = "\u202a\u202b\u202c\u202d\u202e\u2066\u2067\u2068\u2069"
 
 
 def with_unit(unit: Unit) -> tuple[BeforeValidator, WithJsonSchema]:
@@ -39,6 +42,22 @@ def _tolerance(value: object) -> str:
     raise UnitError('write a tolerance with its unit, relative as in "0.1 %" or absolute as in "1 mm"')
 
 
+def _one_line(text: str) -> str:
+    return _written(text, "")
+
+
+def _lines(text: str) -> str:
+    return _written(text, "\n\t")
+
+
+def _written(text: str, allowed: str) -> str:
+    """A text without characters that are no writing: they steer terminals, or turn the text around them."""
+    for each in text:
+        if each not in allowed and (unicodedata.category(each) in ("Cc", "Zl", "Zp") or each in _TURNS_AROUND):
+            raise UnitError(f"a text without the control character U+{ord(each):04X} is needed")
+    return text
+
+
 # Named types are written once in the JSON Schema, and referred to.
 Length = TypeAliasType("Length", Annotated[float, *with_unit("mm")])
 Force = TypeAliasType("Force", Annotated[float, *with_unit("N")])
@@ -52,7 +71,9 @@ Acceleration = TypeAliasType("Acceleration", Annotated[float, *with_unit("mm/s^2
 Number = Annotated[float, BeforeValidator(_plain_number), WithJsonSchema({"type": "number"})]
 Tolerance = Annotated[str, BeforeValidator(_tolerance), WithJsonSchema(_WITH_UNIT)]
 Name = Annotated[str, Field(strict=True, pattern=r"^[A-Za-z0-9_][A-Za-z0-9_ .-]*$")]
-Text = Annotated[StrictStr, Field(min_length=1)]
+Text = Annotated[StrictStr, Field(min_length=1), AfterValidator(_one_line)]
+Title = Annotated[Text, Field(max_length=200)]
+Lines = Annotated[StrictStr, AfterValidator(_lines)]
 Point = tuple[Length, Length, Length]
 Direction = tuple[Number, Number, Number]
 Corner = tuple[Length, Length]

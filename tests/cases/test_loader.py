@@ -921,6 +921,9 @@ def test_a_stress_may_be_asked_for_on_the_border_of_a_section(scene, section, po
         pytest.param(GOOD + "\n[rods.lower]\n", "text that is not TOML", "'rods', 'lower'", id="rod declared twice"),
         pytest.param(edited(("0.3", "0.3\npoisson_ratio = 0.3")), "text that is not TOML", "line", id="key twice"),
         pytest.param("a = " + "[" * 100000, "tables or lists nested", "30 levels", id="nested too deeply"),
+        pytest.param(".".join(["a"] * 5000) + " = 1", "tables or lists nested", "30 levels", id="deep key"),
+        pytest.param("a = [{" + ".".join(["b"] * 29) + " = 1}]", "tables or lists nested", "30", id="deep in a list"),
+        pytest.param(GOOD + "#" * 1_000_000, "1 MB", "at most 1 MB", id="too large"),
         pytest.param("a = 1" + "0" * 5000, "text that is not TOML", "digits", id="endless number"),
         pytest.param(b"\x89PNG\r\n\x1a\n\x00\xff", "something other than text", "TOML", id="binary"),
     ],
@@ -932,6 +935,45 @@ def test_a_file_that_is_no_case_is_named(message, content, found, remedy):
     assert found in text
     assert remedy in text
     assert "\n" not in text
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "found"),
+    [
+        ('title = "Two', 'title = "Two\\nlines and', '"Two\\nlines and'),
+        ('title = "Two', 'title = "\\u001b[2JTwo', '"\\u001b[2JTwo'),
+        ('title = "Two', 'title = "\u202eTwo', '"\\u202eTwo'),
+        ("Two cantilevers overlap", "\\u0007Two cantilevers overlap", '"\\u0007Two'),
+        ("[materials.lower]", '"\\u009b2J" = 1\n[materials.lower]', "an unknown key"),
+        ("[materials.lower]", "x" * 3000 + " = 1\n[materials.lower]", "an unknown key"),
+    ],
+)
+def test_what_would_steer_a_terminal_is_refused_and_not_passed_on(message, old, new, found):
+    text = message(edited((old, new)))
+
+    assert f"found {found}" in text or found in text
+    assert text.isprintable()
+    assert len(text) < 600
+
+
+@pytest.mark.parametrize(
+    "name", ["<script>alert(1)</script>", ".hidden", "a\nb", "..", "--output", "x" * 150, "a'b", "%2e"]
+)
+def test_a_file_name_that_pages_and_results_cannot_have_is_refused(tmp_path, name):
+    path = tmp_path / f"{name}.toml".replace("/", "")
+    path.write_text(GOOD, encoding="utf-8")
+
+    with pytest.raises(CaseError, match="found the file name .*; rename it with letters") as caught:
+        load_case(path)
+
+    assert str(caught.value).isprintable()
+
+
+def test_a_file_name_may_be_of_any_alphabet(tmp_path):
+    path = tmp_path / "Träger 梁, E = 50 (2).toml"
+    path.write_text(GOOD, encoding="utf-8")
+
+    assert load_case(path).name == "Träger 梁, E = 50 (2)"
 
 
 def test_line_ends_and_byte_order_mark_of_other_systems_do_not_matter(tmp_path):
