@@ -56,7 +56,10 @@ def main() -> NoReturn:
     # Seconds are those of one thread, unless the user asks for more: small matrices lose by threads.
     for variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
         os.environ.setdefault(variable, "1")
-    sys.exit(run(sys.argv[1:]))
+    try:
+        sys.exit(run(sys.argv[1:]))
+    except KeyboardInterrupt:  # while modules are imported
+        sys.exit(INTERRUPTED)
 
 
 def run(arguments: Sequence[str]) -> int:
@@ -93,6 +96,90 @@ def list_cases() -> int:
     width = max(len(name) for name in names)
     for name in names:
         print(f"{name:<{width}}  {load_case(name).title}")
+    return 0
+
+
+@app.command(name="new")
+def new_case(
+    name: str,
+    /,
+    *,
+    template: str | None = None,
+    title: str | None = None,
+    length: str | None = None,
+    radius: str | None = None,
+    angle: str | None = None,
+    width: str | None = None,
+    height: str | None = None,
+    young_modulus: str | None = None,
+    poisson_ratio: str | None = None,
+    upper_modulus: str | None = None,
+    overlap: str | None = None,
+    gap: str | None = None,
+    bed_modulus: str | None = None,
+    force: str | None = None,
+) -> int:
+    """Make a commented case file to begin from, NAME.toml, and the JSON Schema that editors complete it by.
+
+    What is not given is asked for on a terminal; elsewhere defaults are taken, and said. Values are as in case files:
+    "300 mm", "200 GPa", or a number in mm, N, MPa or rad.
+
+    Parameters
+    ----------
+    name
+        of the case, or a path ending in it
+    template
+        single-rod, two-rods, curved-rod or bar-on-bed
+    title
+        one line that says what the case is
+    length
+        of the rod, or of each of two
+    radius
+        of the curved rod
+    angle
+        of the curved rod, such as "90 deg"
+    width
+        of the section, across; for the curved rod along its radius
+    height
+        of the section, upwards; for the curved rod across its plane
+    young_modulus
+        of the rod, or of the lower one of two
+    poisson_ratio
+        of the rods
+    upper_modulus
+        Young's modulus of the upper one of two rods
+    overlap
+        of two rods
+    gap
+        between two rods before the load
+    bed_modulus
+        of the bed, a stress per length, such as "1 N/mm^3"
+    force
+        on the rod, upwards; for the curved rod along Z
+    """
+    flags = {
+        "length": length,
+        "radius": radius,
+        "angle": angle,
+        "width": width,
+        "height": height,
+        "young_modulus": young_modulus,
+        "poisson_ratio": poisson_ratio,
+        "upper_modulus": upper_modulus,
+        "overlap": overlap,
+        "gap": gap,
+        "bed_modulus": bed_modulus,
+        "force": force,
+    }
+    from reports.new_case.command import NewCaseError, new_case_file
+
+    try:
+        written = new_case_file(name, template, title, {key: text for key, text in flags.items() if text is not None})
+    except NewCaseError as error:
+        raise InputError(str(error)) from error
+    for note in written.notes:
+        print(f"rodcheck: {note}", file=sys.stderr)
+    print(written.path)
     return 0
 
 

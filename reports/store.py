@@ -45,3 +45,25 @@ def write_whole(path: Path, text: str) -> None:
     """
     with in_place_of(path) as temporary:
         temporary.write_text(text, encoding="utf-8")
+
+
+def write_new(path: Path, text: str) -> None:
+    """Write a text file that does not exist yet, whole or not at all.
+
+    Raises
+    ------
+    FileExistsError
+        if there is something of this name.
+    OSError
+        if the folder or the file cannot be written.
+    """
+    handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.", suffix=".tmp")
+    os.close(handle)
+    temporary = Path(name)
+    try:
+        temporary.write_text(text, encoding="utf-8")
+        temporary.chmod(0o644)
+        # A link is made at once and never takes the place of a file, which a check before a rename could.
+        os.link(temporary, path)
+    finally:
+        temporary.unlink(missing_ok=True)
