@@ -16,7 +16,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from cases.scene import LineLoad, Rod, Scene
+from cases.scene import ContactPair, GapTable, LineLoad, Rod, Scene
 from reference3d.frames import pair_overlap
 from reference3d.scope import clamps, forces, on_bed, rectangle
 
@@ -89,7 +89,9 @@ def rod_borders(scene: Scene, rod: Rod, refinement: int, symmetric: bool) -> Bor
             add(load.position, LOAD_CELL * side)
     for pair in scene.contacts:
         overlap = pair_overlap(scene, pair)
-        for face, opposite in zip(pair.faces, (overlap.first, overlap.second), strict=False):
+        on_second = overlap.sign[0], overlap.shift[0]
+        sides = (overlap.first, (1.0, 0.0)), (overlap.second, on_second)
+        for face, (opposite, (sign, shift)) in zip(pair.faces, sides, strict=False):
             if face.rod != rod.name:
                 continue
             sections = [rectangle(scene.rod(each.rod)) for each in pair.faces]
@@ -97,6 +99,8 @@ def rod_borders(scene: Scene, rod: Rod, refinement: int, symmetric: bool) -> Bor
             at_ends, within = (BED_CELL, BED_CELL) if on_bed(pair) else (ZONE_END_CELL, ZONE_CELL)
             for place in opposite[0]:
                 add(place, at_ends * smaller)
+            for place in gap_kinks(pair, *overlap.first[0]):
+                add(sign * place + shift, within * smaller)
             zones.append(_Zone(*opposite[0], within * smaller))
             across["x" if face.face in ("top", "bottom") else "y"] += opposite[1]
     return Borders(
@@ -104,6 +108,12 @@ def rod_borders(scene: Scene, rod: Rod, refinement: int, symmetric: bool) -> Bor
         y=across_borders(section.height, across["y"], side, refinement, False),
         s=_along(breaks, zones, LARGEST_CELL * side, refinement),
     )
+
+
+def gap_kinks(pair: ContactPair, start: float, end: float) -> list[float]:
+    """Stations between two others where a gap given by a table may bend: nodes beside a ridge would miss its height."""
+    stations = pair.gap.stations if isinstance(pair.gap, GapTable) else ()
+    return [station for station in stations if start < station < end]
 
 
 def _along(breaks: dict[float, float], zones: list[_Zone], largest: float, refinement: int) -> Array:

@@ -23,6 +23,7 @@ from reference3d.grading import (
     SAMPLES,
     ZONE_CELL,
     ZONE_END_CELL,
+    gap_kinks,
     segment_borders,
 )
 from reference3d.scope import on_bed
@@ -90,6 +91,8 @@ def layer_borders(scene: Scene, rod: Rod, refinement: int) -> Array:
                 add(patch.start, at_ends * smaller)
                 add(patch.end, at_ends * smaller)
                 close.append((patch.start, patch.end, within * smaller))
+                for place in gap_kinks(pair, patch.start, patch.end) if face == pair.first else ():
+                    add(place, within * smaller)
                 if patch.least is not None:
                     add(patch.least, LEAST_GAP_CELL * smaller)
     parts = [np.zeros(1)]

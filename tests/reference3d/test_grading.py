@@ -1,11 +1,12 @@
 """Where element borders lie."""
 
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
 import pytest
 
-from cases.scene import Line, RodFace
+from cases.scene import GapTable, Line, RodFace
 from reference3d.grading import rod_borders
 
 
@@ -76,3 +77,17 @@ def test_a_side_face_divides_the_height(two_cantilevers):
     y = rod_borders(scene, scene.rod("lower"), 1, symmetric=False).y
 
     assert np.abs(y + 3.5).min() < 1e-9
+
+
+def test_stations_of_a_gap_table_are_borders_of_both_rods(two_cantilevers):
+    scene = two_cantilevers(50000.0, 0.0)
+    (pair,) = scene.contacts
+    gap = GapTable((150.0, 223.0, 271.0, 310.0), (0.5, 0.0, 0.2, 0.5))
+    scene = replace(scene, contacts=(replace(pair, gap=gap),))
+
+    lower, upper = (rod_borders(scene, rod, 2, symmetric=True).s for rod in scene.rods)
+
+    for station in (223.0, 271.0):  # those in the zone; along the second rod they count from X = 200
+        assert np.abs(lower - station).min() < 1e-9
+        assert np.abs(upper - (station - 200.0)).min() < 1e-9
+    assert np.abs(lower - 150.0).min() > 1e-3
