@@ -66,6 +66,7 @@ def find_edges(
     positions: Array,
     system_at: Callable[[Array], tuple[ContactSystem, Mapping[str, Rates]]],
     jacobian: Array | None = None,
+    share: float | None = None,
 ) -> EdgeSearch:
     """Roots of the edge pressures in the edge positions, all at once, by Newton's method.
 
@@ -78,6 +79,8 @@ def find_edges(
     positions : first guess, mm, shape (n_edges,)
     system_at : makes the contact system with the borders at given positions, and tells how these follow the edges
     jacobian : derivatives by the positions from the search in a scene nearly the same; the first step takes them
+    share : part of its stretch's length by which the next step may still move an edge that counts as found; without it
+        `EDGE_TOLERANCE`, and no more than `SHARE`
     """
     outward = np.array([edge.outward for edge in edges])
     bracket = Bracket()
@@ -105,13 +108,18 @@ def find_edges(
         new = positions + outward * _step(scene, current, edges, values[-1], jacobian, bracket)
         if _out_of_place(scene, moved(stretches, edges, new)):
             outcome = "topology"
-        elif (np.abs(new - positions) < np.minimum(EDGE_TOLERANCE, SHARE * _lengths(current, edges))).all():
+        elif (np.abs(new - positions) < _accepted(_lengths(current, edges), share)).all():
             outcome = "converged"
         elif len(tried) == MOST_STEPS:
             outcome = "stagnated"
         else:
             continue
         return EdgeSearch(outcome, positions, np.array(tried), system, new, jacobian)
+
+
+def _accepted(lengths: Array, share: float | None) -> Array:
+    """Steps, mm, that edges of stretches of these lengths need not take any more."""
+    return np.minimum(EDGE_TOLERANCE, SHARE * lengths) if share is None else share * lengths
 
 
 def _step(

@@ -218,6 +218,7 @@ def moved_contact(
     look: ContactSystem | Sequence[Stretch],
     system_on: SystemOn,
     begin: Begin | None = None,
+    edge_share: float | None = None,
 ) -> MovedContact:
     """Find the stretches in contact, move borders onto their edges, and solve on those.
 
@@ -226,6 +227,8 @@ def moved_contact(
     stretches say how far the edges may be from there.
 
     look : where to begin: stretches, or a system on the natural borders, at any level, whose solution shows them
+    edge_share : as `share` of `find_edges`: how precisely borders sit on edges. Forces are stationary there; 0.03 of
+        the stretch's length changes them by some 1e-6
     """
     solutions, active_sets = 0, 0
 
@@ -243,7 +246,7 @@ def moved_contact(
     for attempt in range(MOST_TOPOLOGIES):
         edges, positions = moving_edges(scene, stretches)
         start = begin if attempt == 0 else None
-        search = _search(scene, natural, stretches, edges, positions, system_on, start) if edges else None
+        search = _search(scene, natural, stretches, edges, positions, system_on, start, edge_share) if edges else None
         system = system_on(natural) if search is None else search.system
         solutions += 1 if search is None else len(search.steps)
         active_sets += 0 if search is None else len(search.steps)
@@ -253,7 +256,7 @@ def moved_contact(
         if search is not None and search.outcome == "converged":
             wanted = moved(stretches, edges, search.positions)
             if same_topology(found, wanted):
-                settled = tuple(replace(stretch, slack=EDGE_TOLERANCE) for stretch in wanted)
+                settled = _settled(stretches, edges, search, edge_share)
                 return MovedContact(forces.outcome, solutions, active_sets, settled, system, forces, edges, search)
         stretches = found
         stagnated = search is not None and search.outcome == "stagnated"
@@ -285,6 +288,7 @@ def _search(
     positions: Array,
     system_on: SystemOn,
     begin: Begin | None,
+    share: float | None,
 ) -> EdgeSearch:
     """One search with the borders that follow each edge chosen beforehand."""
     plan = border_plan(scene, natural, edges, positions)
@@ -293,4 +297,17 @@ def _search(
         return system_on(placed_meshes(plan, at)), edge_rates(plan, at)
 
     start, jacobian = (positions, None) if begin is None else begin.edges(edges, positions)
-    return find_edges(scene, stretches, edges, start, system_at, jacobian)
+    return find_edges(scene, stretches, edges, start, system_at, jacobian, share)
+
+
+def _settled(
+    stretches: Sequence[Stretch], edges: Sequence[Edge], search: EdgeSearch, share: float | None
+) -> tuple[Stretch, ...]:
+    """The stretches with their ends on the borders; where these sit roughly only, where the search's last step leads.
+
+    How long that step was bounds what they are off; slopes being exact, they are off by 1 % of it.
+    """
+    if share is None:
+        return tuple(replace(each, slack=EDGE_TOLERANCE) for each in moved(stretches, edges, search.positions))
+    slack = max(EDGE_TOLERANCE, float(np.abs(search.root - search.positions).max()))
+    return tuple(replace(each, slack=slack) for each in moved(stretches, edges, search.root))
