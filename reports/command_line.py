@@ -184,6 +184,56 @@ def new_case(
 
 
 @app.command
+def check(case: str, /, *, output: Annotated[Path | None, Parameter(name=["--output", "-o"])] = None) -> int:
+    """Look at a case before it is solved: what it says, how large it is, what may surprise, and a picture.
+
+    Parameters
+    ----------
+    case
+        path of a case file, or name of a case of the library
+    output
+        file, ending in .png, for the picture; without it CASE-scene.png beside the case file, or here for one of the
+        library
+    """
+    from cases.loader import library_names, load_case
+
+    loaded = load_case(case)
+    beside = Path() if case in library_names() else Path(case).parent
+    picture = beside / f"{loaded.name}-scene.png" if output is None else output
+    if picture.suffix != ".png" or picture.is_dir() or not picture.parent.is_dir():
+        raise InputError(f"--output: found {picture}; give a file whose name ends in .png, in a folder that exists")
+    from concurrent.futures import ThreadPoolExecutor
+
+    from reports.check.picture import scene_picture
+    from reports.processes import ProcessFailed
+    from reports.store import write_whole_bytes
+
+    # The picture is drawn in a process of its own while the tables are made.
+    with ThreadPoolExecutor(1) as waiting:
+        drawing = waiting.submit(scene_picture, loaded.scene)
+        from reports.check.printing import print_summary
+        from reports.check.summary import summary
+
+        found = summary(loaded)
+        print_summary(loaded, found)
+        try:
+            drawn = drawing.result()
+        except ProcessFailed as error:
+            print(f"rodcheck: {loaded.name}: no picture, {error}", file=sys.stderr)
+            drawn = None
+    if drawn is not None:
+        try:
+            write_whole_bytes(picture, drawn)
+        except OSError as error:
+            where = f"cannot write to {error.filename or picture} ({error.strerror})"
+            raise InputError(f"--output: {where}; give another place") from error
+        print(picture)
+    if found.problem:
+        raise InputError(f"{loaded.name}: {found.problem}")
+    return NOT_PASSED if drawn is None else 0
+
+
+@app.command
 def solve(
     case: str,
     /,

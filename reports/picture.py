@@ -24,6 +24,7 @@ from reports.view import (
     extent,
     face_normals,
     held_directions,
+    least_gap,
     load_arrows,
     view_plane,
 )
@@ -33,6 +34,9 @@ DRAWN_DISPLACEMENT = 0.08
 SIZE = (1800, 700)
 INK = "#1f2933"
 HOLD = "#b8c0c8"
+# Rods before they are solved, one after the other, and the borders of where they may touch.
+COLOURS = ("#7fa8d1", "#e0b06c", "#8fbf9a", "#c79ac2", "#d1908a", "#9aa7b5")
+ZONE = "#b3261e"
 
 
 @dataclass(frozen=True)
@@ -91,33 +95,13 @@ def drawn_shifts(scene: Scene, quantities: Quantities, factor: float) -> dict[st
     for pair in scene.contacts:
         if not isinstance(pair.second, RodFace) or groups[pair.first.rod] == groups[pair.second.rod]:
             continue
-        normal, drawn, gap = _least_gap(scene, quantities, pair, pair.second)
+        normal, drawn, gap = least_gap(scene, quantities, pair, pair.second)
         move = shifts[pair.first.rod] + (factor * gap - drawn) * normal - shifts[pair.second.rod]
         kept, moved = groups[pair.first.rod], groups[pair.second.rod]
         for name in shifts:
             if groups[name] == moved:
                 shifts[name], groups[name] = shifts[name] + move, kept
     return shifts
-
-
-def _least_gap(
-    scene: Scene, quantities: Quantities, pair: ContactPair, opposite: RodFace
-) -> tuple[Array, float, float]:
-    """Normal of the first face, distance as drawn and given gap where that is least in the zone, mm.
-
-    The distance is that to the point of the other centre line that is seen nearest along the normal.
-    """
-    found, other = quantities.rod(pair.first.rod), quantities.rod(opposite.rod)
-    station = np.linspace(*pair.zone, 101)
-    normal = face_normals(found, pair.first.face, station)
-    apart = other.position[:, None, :] - between(found, found.position, station)[:, :, None]
-    along = np.einsum("in,inm->nm", normal, apart)
-    nearest = np.argmin(np.einsum("inm,inm->nm", apart, apart) - along**2, axis=1)
-    half, other_half = (face_extent(scene.rod(face.rod), face.face)[0] for face in pair.faces)
-    drawn = along[np.arange(len(station)), nearest] - half - other_half
-    gap = drawn if pair.gap == "drawn" else given_gap(pair.gap, station)
-    least = int(np.argmin(gap))
-    return normal[:, least], float(drawn[least]), float(gap[least])
 
 
 def _joined(scene: Scene) -> dict[str, int]:
@@ -137,13 +121,10 @@ def draw(scene: Scene, quantities: Quantities) -> Picture:
     RuntimeError
         where there is no way to draw off screen. VTK may also end the process then.
     """
-    # VTK says on standard error that there is no X server and then draws without one.
-    pyvista.vtk_verbosity("off")
     factor = magnification(quantities)
     shifts = drawn_shifts(scene, quantities, factor)
     limit = max(float(np.linalg.norm(rod.displacement, axis=0).max()) for rod in quantities.rods)
-    plotter: Any = pyvista.Plotter(off_screen=True, window_size=list(SIZE))
-    plotter.set_background("white")
+    plotter = _plotter()
     for rod in scene.rods:
         found = quantities.rod(rod.name)
         corners = deformed_surface(rod, found, factor, shifts[rod.name])
@@ -163,16 +144,7 @@ def draw(scene: Scene, quantities: Quantities) -> Picture:
         still = deformed_surface(rod, found, 0.0, np.zeros(3))
         before = _closed(still, np.zeros(still.shape[1]), concave).extract_feature_edges(40.0)
         plotter.add_mesh(before, color="#8a94a0", line_width=1.5, opacity=0.7)
-    _add_supports(plotter, scene, quantities, factor, shifts)
-    _add_joints(plotter, scene, quantities, factor, shifts)
-    _add_beds(plotter, scene, quantities, factor, shifts)
-    _add_ground(plotter, scene, quantities, factor, shifts)
-    _add_loads(plotter, scene, quantities, factor, shifts)
-    right, up = view_plane(scene, quantities)
-    size = extent(quantities)
-    # Sections that are not small beside the scene, with their clamps, need more room.
-    stout = max(0.0, 2.2 * max(float(np.ptp(outline(rod.section), axis=0).max()) for rod in scene.rods) - 0.1 * size)
-    _add_scale(plotter, quantities, right, up, stout)
+    _add_surroundings(plotter, scene, quantities, factor, shifts)
     plotter.add_scalar_bar(
         title="Displacement of the centre line, mm\n",
         mapper=coloured.mapper,
@@ -186,6 +158,70 @@ def draw(scene: Scene, quantities: Quantities) -> Picture:
         width=0.40,
         height=0.13,
     )
+    return Picture(_photographed(plotter, scene, quantities), factor)
+
+
+def draw_undeformed(scene: Scene, quantities: Quantities) -> Picture:
+    """Draw the rods as they are before anything moves, each named, with all that holds and loads them and may touch.
+
+    Raises
+    ------
+    RuntimeError
+        as `draw`.
+    """
+    plotter, shifts = _plotter(), {rod.name: np.zeros(3) for rod in scene.rods}
+    for number, rod in enumerate(scene.rods):
+        found = quantities.rod(rod.name)
+        corners = deformed_surface(rod, found, 0.0, np.zeros(3))
+        bar = _closed(corners, np.zeros(corners.shape[1]), isinstance(rod.section, Polygon))
+        plotter.add_mesh(bar, color=COLOURS[number % len(COLOURS)], ambient=0.35, diffuse=0.7)
+        plotter.add_mesh(bar.extract_feature_edges(40.0), color=INK, line_width=2)
+        _add_text(plotter, found.position[:, len(found.station) // 2], rod.name)
+    for pair in scene.contacts:
+        for sign in (-1.0, 1.0):
+            plotter.add_mesh(_zone_border(scene, quantities, pair, sign), color=ZONE, line_width=6)
+    _add_surroundings(plotter, scene, quantities, 1.0, shifts)
+    return Picture(_photographed(plotter, scene, quantities), 1.0)
+
+
+def _zone_border(scene: Scene, quantities: Quantities, pair: ContactPair, sign: float) -> pyvista.PolyData:
+    """One border of the candidate zone, where the first face ends sideways."""
+    rod, found = scene.rod(pair.first.rod), quantities.rod(pair.first.rod)
+    station = np.linspace(*pair.zone, 101)
+    normal = face_normals(found, pair.first.face, station)
+    away, width = face_extent(rod, pair.first.face)
+    across = np.cross(between(found, found.axes[:, 2].T, station), normal, axis=0)
+    middle = between(found, found.position, station) + away * normal
+    return pyvista.lines_from_points((middle + 0.5 * sign * width * across).T)
+
+
+def _plotter() -> pyvista.Plotter:
+    """An empty picture that is drawn off screen."""
+    # VTK says on standard error that there is no X server and then draws without one.
+    pyvista.vtk_verbosity("off")
+    plotter: Any = pyvista.Plotter(off_screen=True, window_size=list(SIZE))
+    plotter.set_background("white")
+    return plotter
+
+
+def _add_surroundings(
+    plotter: pyvista.Plotter, scene: Scene, quantities: Quantities, factor: float, shifts: dict[str, Array]
+) -> None:
+    """All that holds and loads the rods."""
+    _add_supports(plotter, scene, quantities, factor, shifts)
+    _add_joints(plotter, scene, quantities, factor, shifts)
+    _add_beds(plotter, scene, quantities, factor, shifts)
+    _add_ground(plotter, scene, quantities, factor, shifts)
+    _add_loads(plotter, scene, quantities, factor, shifts)
+
+
+def _photographed(plotter: pyvista.Plotter, scene: Scene, quantities: Quantities) -> bytes:
+    """The picture as PNG, seen across the plane that shows most, with a scale; the plotter is closed."""
+    right, up = view_plane(scene, quantities)
+    size = extent(quantities)
+    # Sections that are not small beside the scene, with their clamps, need more room.
+    stout = max(0.0, 2.2 * max(float(np.ptp(outline(rod.section), axis=0).max()) for rod in scene.rods) - 0.1 * size)
+    _add_scale(plotter, quantities, right, up, stout)
     plotter.enable_parallel_projection()
     plotter.enable_anti_aliasing("ssaa")
     lowered = -0.03 * size * up
@@ -200,7 +236,7 @@ def draw(scene: Scene, quantities: Quantities) -> Picture:
     stream = io.BytesIO()
     plotter.screenshot(stream)
     plotter.close()
-    return Picture(stream.getvalue(), factor)
+    return stream.getvalue()
 
 
 def _closed(corners: Array, values: Array, concave: bool) -> pyvista.PolyData:

@@ -47,6 +47,18 @@ def write_whole(path: Path, text: str) -> None:
         temporary.write_text(text, encoding="utf-8")
 
 
+def write_whole_bytes(path: Path, data: bytes) -> None:
+    """Write a file, whole or not at all.
+
+    Raises
+    ------
+    OSError
+        if the folder or the file cannot be written.
+    """
+    with in_place_of(path) as temporary:
+        temporary.write_bytes(data)
+
+
 def write_new(path: Path, text: str) -> None:
     """Write a text file that does not exist yet, whole or not at all.
 

@@ -29,9 +29,10 @@ WIDTH = 150
 STYLES: dict[Verdict, str] = {"pass": "green", "fail": "bold red", "not resolved": "yellow"}
 
 
-def _console() -> Console:
-    console = Console(highlight=False)
-    return console if console.is_terminal else Console(highlight=False, width=WIDTH)
+def console() -> Console:
+    """Where tables are printed, as wide as they need where it is no terminal."""
+    terminal = Console(highlight=False)
+    return terminal if terminal.is_terminal else Console(highlight=False, width=WIDTH)
 
 
 def _cost(run: Run) -> str:
@@ -54,11 +55,9 @@ def _vector(components: Array) -> str:
 
 def print_run(case: Case, run: Run) -> None:
     """Print one model's answer to a case."""
-    console, quantities = _console(), run.quantities
-    console.print(f"[bold]{case.title}[/] ({case.name}), {_model(run)}: {quantities.outcome}")
-    console.print(
-        f"{_cost(run)}; {quantities.contact_solutions} contact solutions, {quantities.active_sets} active sets"
-    )
+    out, quantities = console(), run.quantities
+    out.print(f"[bold]{escape(case.title)}[/] ({escape(case.name)}), {_model(run)}: {escape(quantities.outcome)}")
+    out.print(f"{_cost(run)}; {quantities.contact_solutions} contact solutions, {quantities.active_sets} active sets")
     contacts = Table(
         "contact",
         "force, N",
@@ -99,10 +98,10 @@ def print_run(case: Case, run: Run) -> None:
     for (name, station), found in quantities.reactions.items():
         reactions.add_row(name, f"{station:g}", _vector(found[:3]), _vector(found[3:]))
     if quantities.contacts:
-        console.print(contacts)
-    console.print(rods)
-    console.print(reactions)
-    console.print(
+        out.print(contacts)
+    out.print(rods)
+    out.print(reactions)
+    out.print(
         f"strain energy {number(quantities.strain_energy)} N mm, "
         f"equilibrium residual {quantities.equilibrium_residual:.1e}"
     )
@@ -110,16 +109,16 @@ def print_run(case: Case, run: Run) -> None:
 
 def print_comparison(run: CaseRun | Failure) -> None:
     """Print what a case was held against, and the verdicts."""
-    console = _console()
-    console.print(f"[bold]{run.case.title}[/] ({run.case.name})")
+    out = console()
+    out.print(f"[bold]{escape(run.case.title)}[/] ({escape(run.case.name)})")
     if isinstance(run, Failure):
-        console.print(f"[bold red]failed[/]: {run.reason}\n")
+        out.print(f"[bold red]failed[/]: {escape(run.reason)}\n")
         return
     for answer in (run.rod, *run.references[-1:]):
-        outcome = "" if answer.quantities.converged else f" [bold red]{answer.quantities.outcome}[/]"
-        console.print(f"{_model(answer)}: {_cost(answer)}, {answer.peak_memory:.0f} MB{answer.origin}{outcome}")
+        outcome = "" if answer.quantities.converged else f" [bold red]{escape(answer.quantities.outcome)}[/]"
+        out.print(f"{_model(answer)}: {_cost(answer)}, {answer.peak_memory:.0f} MB{answer.origin}{outcome}")
     if run.refusal:
-        console.print(f"[yellow]The 3D reference cannot treat this case[/]: {escape(run.refusal)}")
+        out.print(f"[yellow]The 3D reference cannot treat this case[/]: {escape(run.refusal)}")
     table = Table(
         "quantity", "of", "value", "against", "reference", "difference", "uncertainty", "tolerance", "verdict"
     )
@@ -135,24 +134,24 @@ def print_comparison(run: CaseRun | Failure) -> None:
             measure(found.quantity, found.tolerance),
             f"[{STYLES[found.verdict]}]{found.verdict}[/]",
         )
-    console.print(table)
+    out.print(table)
     for reason in dict.fromkeys(found.reason for found in run.comparisons if found.reason):
-        console.print(f"not resolved: {escape(reason)}")
-    _print_peers(console, run)
-    console.print()
+        out.print(f"not resolved: {escape(reason)}")
+    _print_peers(out, run)
+    out.print()
 
 
-def _print_peers(console: Console, run: CaseRun) -> None:
+def _print_peers(out: Console, run: CaseRun) -> None:
     """Print what every solver says, side by side, what it spent, and why others say nothing."""
     found = peers_table(run)
     if run.peers:
         values = Table("side by side (difference from 3D)", *found.columns)
         for title_, cells in found.rows:
             values.add_row(escape(title_), *cells)
-        console.print(values)
+        out.print(values)
         costs = Table("solver", "unknowns", "time", "peak memory", "outcome")
         for cost in found.costs:
             costs.add_row(cost.solver, cost.unknowns, cost.time, cost.memory, escape(cost.note))
-        console.print(costs)
+        out.print(costs)
     for sentence in found.missing:
-        console.print(escape(sentence))
+        out.print(escape(sentence))

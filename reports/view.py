@@ -7,16 +7,20 @@ from dataclasses import dataclass
 import numpy as np
 
 from cases.scene import (
+    ContactPair,
     Face,
     Gravity,
     LineLoad,
     Load,
     Pressure,
+    RodFace,
     Scene,
     SectionForce,
     SectionMoment,
     Support,
+    given_gap,
 )
+from reports.geometry import face_extent
 from reports.quantities import Quantities, RodQuantities
 from reports.solution import Array
 
@@ -125,3 +129,21 @@ def held_directions(support: Support, rod: RodQuantities) -> tuple[Array, Array]
 def between(rod: RodQuantities, values: Array, station: Array) -> Array:
     """Vectors along a rod, shape (3, n), at other stations, by straight lines between the rod's own."""
     return np.array([np.interp(station, rod.station, component) for component in values])
+
+
+def least_gap(scene: Scene, quantities: Quantities, pair: ContactPair, opposite: RodFace) -> tuple[Array, float, float]:
+    """Normal of the first face, distance as drawn and given gap where that is least in the zone, mm.
+
+    The distance is that to the point of the other centre line that is seen nearest along the normal.
+    """
+    found, other = quantities.rod(pair.first.rod), quantities.rod(opposite.rod)
+    station = np.linspace(*pair.zone, 101)
+    normal = face_normals(found, pair.first.face, station)
+    apart = other.position[:, None, :] - between(found, found.position, station)[:, :, None]
+    along = np.einsum("in,inm->nm", normal, apart)
+    nearest = np.argmin(np.einsum("inm,inm->nm", apart, apart) - along**2, axis=1)
+    half, other_half = (face_extent(scene.rod(face.rod), face.face)[0] for face in pair.faces)
+    drawn = along[np.arange(len(station)), nearest] - half - other_half
+    gap = drawn if pair.gap == "drawn" else given_gap(pair.gap, station)
+    least = int(np.argmin(gap))
+    return normal[:, least], float(drawn[least]), float(gap[least])

@@ -963,7 +963,7 @@ def test_a_file_name_that_pages_and_results_cannot_have_is_refused(tmp_path, nam
     path = tmp_path / f"{name}.toml".replace("/", "")
     path.write_text(GOOD, encoding="utf-8")
 
-    with pytest.raises(CaseError, match="found the file name .*; rename it with letters") as caught:
+    with pytest.raises(CaseError, match=r"found the file name .*; rename it with letters") as caught:
         load_case(path)
 
     assert str(caught.value).isprintable()
