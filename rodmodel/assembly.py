@@ -49,34 +49,43 @@ class ElementStore:
     _elements: dict[Hashable, Element] = field(default_factory=dict)
     chains: dict[str, Chain] = field(default_factory=dict)
 
-    def element(
-        self,
-        rod: Rod,
-        turning: Darboux | None,
-        springs: Springs,
-        fields: Fields,
-        order: int,
-        ends: tuple[float, float],
-    ) -> Element:
-        """Condensed element of the rod for unit axial modulus.
+    def elements(self, rod: Rod, under: Sequence[Springs], fields: Sequence[Fields], mesh: RodMesh) -> list[Element]:
+        """Condensed elements of the rod on its mesh, for unit axial modulus.
 
-        turning : of its frame, rad/mm; None if it varies
-        springs : beds under its faces, their moduli in units of the axial modulus
-        ends : arc lengths of its ends, mm
+        under : beds under the faces of each element, their moduli in units of the axial modulus
+        fields : of each element over the section
         """
-        if turning is None:
-            return self._varying(rod, springs, fields, order, ends)
-        length = ends[1] - ends[0]
-        kind = (rod.section, per_axial_modulus(rod.material), fields, order, turning, springs)
+        turnings = constant_turnings(rod.centre_line, mesh.borders)
+        families: dict[Hashable, ElementFamily] = {}
+        result = []
+        for turning, springs, of_element, order, ends in zip(
+            turnings, under, fields, mesh.orders.tolist(), pairwise(mesh.borders.tolist()), strict=True
+        ):
+            if turning is None:
+                result.append(self._varying(rod, springs, of_element, order, ends))
+                continue
+            # Elements of a rod mostly are of few kinds: only these are looked up by all that they depend on.
+            kind = (turning, springs, of_element, order)
+            if kind not in families:
+                families[kind] = self._family(rod, *kind)
+            result.append(self._constant(families[kind], ends[1] - ends[0]))
+        return result
+
+    def _family(self, rod: Rod, turning: Darboux, springs: Springs, fields: Fields, order: int) -> ElementFamily:
+        material = per_axial_modulus(rod.material)
+        kind = (rod.section, material, fields, order, turning, springs)
         if kind not in self._families:
-            section = section_stiffness(rod.section, per_axial_modulus(rod.material), fields, turning)
+            section = section_stiffness(rod.section, material, fields, turning)
             if springs:
                 section = replace(section, s00=section.s00 + bed_stiffness(rod.section, springs, fields, turning))
             self._families[kind] = element_family(order, fields, section, reversible=turning[2] == 0.0)
+        return self._families[kind]
+
+    def _constant(self, family: ElementFamily, length: float) -> Element:
         # Lengths that differ only by the round-off of the borders they come from are one length.
-        key = (*kind, float(f"{length:.11e}"))
+        key = (family, float(f"{length:.11e}"))
         if key not in self._elements:
-            self._elements[key] = condensed_element(self._families[kind], length)
+            self._elements[key] = condensed_element(family, length)
         return self._elements[key]
 
     def forget(self, most: int) -> None:
@@ -147,13 +156,9 @@ def assembled_rod(
 
     stays : sections held beside those that the scene says
     """
-    turnings, under = constant_turnings(rod.centre_line, mesh.borders), springs_under(scene, rod, mesh.borders)
-    elements = tuple(
-        store.element(rod, turning, springs, Fields(int(level), *mirrors), int(order), ends)
-        for level, order, ends, turning, springs in zip(
-            mesh.levels, mesh.orders, pairwise(mesh.borders.tolist()), turnings, under, strict=True
-        )
-    )
+    levels = {level: Fields(level, *mirrors) for level in set(mesh.levels.tolist())}
+    of_elements = [levels[level] for level in mesh.levels.tolist()]
+    elements = tuple(store.elements(rod, springs_under(scene, rod, mesh.borders), of_elements, mesh))
     fields = node_fields(elements)
     holds = {}
     for held in (*held_sections(scene, rod), *stays):

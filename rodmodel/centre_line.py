@@ -184,8 +184,11 @@ def centre_points(line: CentreLine, station: Array) -> Array:
 
 def global_points(rod: Rod, points: Array) -> Array:
     """Global coordinates of the points (x, y, s) of a rod, mm; shape (3, n) to (3, n)."""
-    across = frames(rod.centre_line, points[2])[:, :2]
-    return np.asarray(centre_points(rod.centre_line, points[2]) + np.einsum("cn,ncg->gn", points[:2], across))
+    line = rod.centre_line
+    if isinstance(line, Line) and line.twist == 0.0:
+        return np.asarray(np.array(line.start, dtype=float)[:, None] + frame(line).T @ points)
+    across = frames(line, points[2])[:, :2]
+    return np.asarray(centre_points(line, points[2]) + np.einsum("cn,ncg->gn", points[:2], across))
 
 
 def local_points(rod: Rod, points: Array) -> Array:

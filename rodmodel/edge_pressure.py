@@ -22,7 +22,7 @@ from rodmodel.borders import Edge, Rates
 from rodmodel.contact import ActiveSet
 from rodmodel.loads import load_parts
 from rodmodel.mesh import SAME_BORDER
-from rodmodel.pairing import facing_points, opposite_stations
+from rodmodel.pairing import opposite_stations
 from rodmodel.section import Fields, axial_modulus
 from rodmodel.stiffness import length_slope
 from rodmodel.stretches import Stretch
@@ -172,8 +172,7 @@ def _slidings(
         for face in contact.faces:
             if face.rod != rod.rod.name or not grid.even:
                 continue
-            facing = facing_points(system.scene, contact, *grid.flat())
-            station, direction = opening(rod.rod, face, contact, grid, facing)
+            station, direction = opening(rod.rod, face, contact, grid)
             sense = 1.0 if face is contact.first else _sense(system.scene.rod(contact.first.rod), rod.rod)
             along = sense * np.repeat(moving[pair].reshape(len(moving[pair]), -1), grid.weight.shape[2], axis=1)
             sliding = along - rates.at(station)

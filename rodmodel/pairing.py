@@ -8,6 +8,7 @@ curved, or on ground, which has no displacement of its own.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -56,6 +57,7 @@ class FaceAxes:
         return points
 
 
+@lru_cache(maxsize=256)
 def face_axes(rod: Rod, face: Face) -> FaceAxes:
     """Geometry of a face of a rod; ValueError where its section has no flat faces."""
     axis = 1 if face in ("top", "bottom") else 0
@@ -65,6 +67,7 @@ def face_axes(rod: Rod, face: Face) -> FaceAxes:
         raise ValueError(f"rod '{rod.name}': only rectangles and boxes have the faces {', '.join(FACES)}")
     extents = (section.width, section.height)
     normal = sign * frame(rod.centre_line)[axis]
+    normal.flags.writeable = False
     return FaceAxes(axis, sign, 0.5 * extents[axis], 0.5 * extents[1 - axis], normal)
 
 
@@ -78,11 +81,15 @@ def is_even(scene: Scene, pair: ContactPair) -> bool:
 
     Only along such pairs element borders can follow the edges of contact on both rods.
     """
-    rods = [scene.rod(face.rod) for face in pair.faces]
-    if not all(is_flat(rod) for rod in rods):
+    return _are_even(tuple((scene.rod(face.rod), face.face) for face in pair.faces))
+
+
+@lru_cache(maxsize=256)
+def _are_even(faces: tuple[tuple[Rod, Face], ...]) -> bool:
+    if not all(is_flat(rod) for rod, _ in faces):
         return False
-    normals = [face_axes(rod, face.face).normal for rod, face in zip(rods, pair.faces, strict=True)]
-    tangents = [frame(rod.centre_line)[2] for rod in rods]
+    normals = [face_axes(rod, face).normal for rod, face in faces]
+    tangents = [frame(rod.centre_line)[2] for rod, _ in faces]
     return all(abs(each[0] @ each[-1]) > PARALLEL for each in (normals, tangents))
 
 
@@ -299,6 +306,7 @@ class ContactGrid:
     weight : share of the face, mm^2, same shape; for the full face
     symmetric : whether only the points from the middle on are carried
     even : whether all stations have the same points across, and the two faces are flat
+    facing : where the points lie on both faces
     """
 
     station: Array
@@ -306,6 +314,7 @@ class ContactGrid:
     weight: Array
     symmetric: bool
     even: bool
+    facing: Facing
 
     def flat(self) -> tuple[Array, Array]:
         """Station and across coordinate of every point, each of shape (n_intervals * n_along * n_across,)."""
@@ -344,4 +353,7 @@ def contact_grid(
     across = np.broadcast_to((0.5 * (low + high) + half_width * eta).reshape(-1, len(eta)), (station.size, len(eta)))
     widths = np.broadcast_to(half_width * weight_across, (station.size, len(eta))).reshape(shape)
     weight = (half_length[:, None] * weight_along)[:, :, None] * widths
-    return ContactGrid(station, across.reshape(shape), weight, symmetric, even)
+    stations = np.repeat(station.ravel(), len(eta))
+    return ContactGrid(
+        station, across.reshape(shape), weight, symmetric, even, facing_points(scene, pair, stations, across.ravel())
+    )

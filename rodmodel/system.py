@@ -35,10 +35,8 @@ from rodmodel.mesh import SAME_BORDER, RodMesh
 from rodmodel.pairing import (
     NO_SHARE,
     ContactGrid,
-    Facing,
     contact_grid,
     face_axes,
-    facing_points,
     is_even,
     on_second,
     opposite_stations,
@@ -177,7 +175,7 @@ def joined_system(
     matrix = np.zeros((count, count))
     gap, spring = np.empty(count), np.empty(count)
     for pair in scene.contacts:
-        gap[points[pair.name]] = initial_gap(scene, pair, grids[pair.name])
+        gap[points[pair.name]] = initial_gap(pair, grids[pair.name])
     on_joints = np.zeros((0 if joints is None else len(joints.free), count + 1))
     for name, assembled in rods.items():
         place, response = places[name], responses[name]
@@ -210,12 +208,9 @@ def _points(grids: Mapping[str, ContactGrid]) -> dict[str, slice]:
     return {name: slice(start, end) for name, start, end in zip(grids, ends, ends[1:], strict=False)}
 
 
-def initial_gap(scene: Scene, pair: ContactPair, grid: ContactGrid) -> Array:
+def initial_gap(pair: ContactPair, grid: ContactGrid) -> Array:
     """Gap before any load at the contact points, mm, shape (n_points,)."""
-    station, across = grid.flat()
-    if pair.gap == "drawn":
-        return facing_points(scene, pair, station, across).distance
-    return given_gap(pair.gap, station)
+    return grid.facing.distance if pair.gap == "drawn" else given_gap(pair.gap, grid.facing.first[2])
 
 
 def _springs(scene: Scene, pair: ContactPair, grid: ContactGrid, multipliers: bool) -> Array:
@@ -299,8 +294,7 @@ def _gap_parts(
             if face.rod != name:
                 continue
             grid = grids[pair.name]
-            facing = facing_points(scene, pair, *grid.flat())
-            found = point_parts(assembled, *opening(assembled.rod, face, pair, grid, facing))
+            found = point_parts(assembled, *opening(assembled.rod, face, pair, grid))
             parts += [replace(part, columns=part.columns + count) for part in found]
             place = np.arange(points_of[pair.name].start, points_of[pair.name].stop)
             places.append(place)
@@ -308,24 +302,22 @@ def _gap_parts(
     return parts, np.concatenate(places)
 
 
-def opening(
-    rod: Rod, face: RodFace, pair: ContactPair, grid: ContactGrid, facing: Facing
-) -> tuple[Array, Callable[[Fields], Array]]:
+def opening(rod: Rod, face: RodFace, pair: ContactPair, grid: ContactGrid) -> tuple[Array, Callable[[Fields], Array]]:
     """How a face of a rod opens the gap of a pair at its contact points.
 
     Returns the points' stations along the rod, shape (n,), and what gives the value of every field there in the
     direction that opens the gap, shape (n_fields, n).
     """
-    points = facing.first if face is pair.first else facing.second
+    points = grid.facing.first if face is pair.first else grid.facing.second
     if points is None:
         raise ValueError(f"contact '{pair.name}': ground does not move")
     sign = -1.0 if face is pair.first else 1.0
     if grid.even:
         # Every station has the same points across, and one direction.
         count = grid.weight.shape[2]
-        one_row, direction = points[:, :count], frame(rod.centre_line) @ facing.normal[:, :count]
+        one_row, direction = points[:, :count], frame(rod.centre_line) @ grid.facing.normal[:, :count]
         return points[2], lambda fields: np.tile(_along(rod, fields, one_row, sign * direction), grid.station.size)
-    direction = np.einsum("nci,in->cn", frames(rod.centre_line, points[2]), facing.normal)
+    direction = np.einsum("nci,in->cn", frames(rod.centre_line, points[2]), grid.facing.normal)
     return points[2], lambda fields: _along(rod, fields, points, sign * direction)
 
 

@@ -18,7 +18,6 @@ from rodmodel.axial import shape_functions
 from rodmodel.borders import natural_mesh
 from rodmodel.centre_line import darboux
 from rodmodel.contact import unilateral_contact
-from rodmodel.pairing import facing_points
 from rodmodel.section import Fields, section_stiffness
 from rodmodel.stiffness import stiffness_terms
 from rodmodel.symmetry import scene_mirrors
@@ -98,9 +97,8 @@ class PlainSparse:
     def _gap_rows(self, rods: list) -> csc_array:
         rows, columns, values = [], [], []
         pair, grid = self.scene.contacts[0], self.system.grids["overlap"]
-        facing = facing_points(self.scene, pair, *grid.flat())
         for (rod, places), face in zip(rods, pair.faces, strict=True):
-            for part in point_parts(rod, *opening(rod.rod, face, pair, grid, facing)):
+            for part in point_parts(rod, *opening(rod.rod, face, pair, grid)):
                 for column, vector in zip(part.columns, part.values.reshape(-1, len(part.columns)).T, strict=True):
                     rows.append(np.full(len(vector), column))
                     columns.append(places[part.element])
