@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -24,7 +24,8 @@ from cases.scene import (
 )
 from reports.case_comparison import case_comparisons, evaluation_points
 from reports.comparison import Extrapolation
-from reports.quantities import evaluate
+from reports.processes import ProcessFailed, Progress, in_own_process
+from reports.quantities import Quantities, evaluate
 from reports.runner import CaseRun, Run
 from reports.solution import Array, Model
 
@@ -201,6 +202,28 @@ def _second_order(coarse: float, medium: float, fine: float) -> Extrapolation:
     """Richardson's extrapolation of second order with halved meshes."""
     del coarse
     return Extrapolation(fine + (fine - medium) / 3.0, abs(fine - medium), 2.0)
+
+
+def _small(given: Sequence[tuple[Scene, Quantities]], progress: Progress) -> list[bytes]:
+    from reports import picture
+
+    picture.SIZE = (180, 70)  # most of the time goes into pixels
+    return [picture.draw(scene, quantities).png for scene, quantities in given]
+
+
+@pytest.fixture
+def drawn() -> Callable[..., list[bytes]]:
+    """Small pictures of scenes with their quantities, PNG, drawn in a process of their own."""
+
+    def draw(*given: tuple[Scene, Quantities]) -> list[bytes]:
+        try:
+            return in_own_process(_small, given)
+        except ProcessFailed as error:
+            if "exit code" not in str(error):
+                raise
+            pytest.skip("VTK found no way to draw here and ended its process")
+
+    return draw
 
 
 @pytest.fixture(scope="session")
