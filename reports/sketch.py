@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from markupsafe import Markup, escape
 
-from cases.scene import Clamp, Gravity, Load, Material, Rod, RodFace, Scene, Support, given_gap, station_of
+from cases.polygon import depth
+from cases.scene import COMPONENTS, Clamp, Gravity, Load, Material, Rod, RodFace, Scene, Support, given_gap, station_of
 from reports import sketch_symbols as symbols
 from reports.geometry import AXES, face_extent
 from reports.quantities import Quantities, RodQuantities
@@ -29,6 +31,12 @@ WIDTH = 500.0
 END_ON = 0.3
 # The largest gap to ground that is drawn.
 FARTHEST = 40.0
+# A rod that is seen slimmer than this has its name beside it.
+LEAST_FOR_NAME = 11.0
+# Places nearer to each other than this have one tick.
+ONE_TICK = 1.5
+# Rows of numbers below the axis.
+ROWS = 3
 # Room below the foot of a text.
 DESCENT = np.array([0.0, 3.0])
 
@@ -47,6 +55,11 @@ class _Band:
     def border(self) -> Array:
         """Corners around the band, shape (2, 2 n)."""
         return np.hstack([self.centre + self.right * self.normal, (self.centre + self.left * self.normal)[:, ::-1]])
+
+    def covers(self, place: Array, margin: float = 0.0) -> bool:
+        """Whether a place, shape (2,), lies within the band or nearer to it than a margin."""
+        corners = tuple((float(x), float(y)) for x, y in self.border.T)
+        return depth(corners, (float(place[0]), float(place[1]))) > -margin
 
 
 @dataclass(frozen=True)
@@ -84,7 +97,7 @@ def scene_sketch(scene: Scene, quantities: Quantities) -> Markup:
     parts += _positions(scene, quantities, plane, scale, base)
     spare = max(0.0, WIDTH - float(high[0] - low[0])) / 2.0  # text keeps its size beside a slim scene
     left, top = low[0] - MARGIN - spare, -high[1] - 48.0
-    width, height = high[0] - low[0] + 2 * (MARGIN + spare), base + 36.0 - top
+    width, height = high[0] - low[0] + 2 * (MARGIN + spare), base + 36.0 + 11.0 * (ROWS - 2) - top
     label = f"Side view of the scene {scene.name}: " + "; ".join(_described(rod) for rod in scene.rods)
     body = "".join(parts)
     return Markup(
@@ -120,14 +133,31 @@ def _band(rod: Rod, found: RodQuantities, plane: Array) -> _Band:
 
 def _bar(rod: Rod, band: _Band) -> str:
     corners = " ".join(f"{x:.2f},{-y:.2f}" for x, y in band.border.T)
-    x, y = band.border.mean(axis=1)
     text = _named(rod)
-    width, height = np.ptp(band.border, axis=1)
-    turn = f' transform="rotate(-90 {x:.1f} {-y:.1f})"' if height > 2.0 * width else ""
+    (x, y), angle = _place_of_name(band, 0.5 * symbols.LETTER * len(text))
+    turn = f' transform="rotate({-angle:.1f} {x:.1f} {-y:.1f})"' if angle else ""
     return (
         f'<polygon class="bar" points="{corners}"/>'
         f'<text class="name" x="{x:.1f}" y="{-y + 3.2:.1f}"{turn}>{escape(text)}</text>'
     )
+
+
+def _place_of_name(band: _Band, half: float) -> tuple[Array, float]:
+    """Where a text that reaches half to either side is put, and its angle, degrees.
+
+    Along the rod in its middle; beside it where the rod is slim, and level where it bends away from the text.
+    """
+    middle = band.centre.shape[1] // 2
+    centre, along, across = band.centre[:, middle], band.tangent[:, middle], band.normal[:, middle]
+    along, across = (along, across) if along[0] > 1e-6 or abs(along[0]) <= 1e-6 < along[1] else (-along, -across)
+    angle = float(np.degrees(np.arctan2(along[1], along[0])))
+    left, right = band.left[middle], band.right[middle]
+    if abs(left - right) < LEAST_FOR_NAME:
+        quarter = band.centre[:, band.centre.shape[1] // 4]  # loads and zones are often in the middle
+        return quarter + (0.5 * abs(left - right) + 6.0) * across, angle
+    place = centre + 0.5 * (left + right) * band.normal[:, middle]
+    inside = all(band.covers(place + end * along) for end in (-half, half))
+    return (place, angle) if inside or abs(along[0]) < 0.1 else (band.border.mean(axis=1), 0.0)
 
 
 def _zones(scene: Scene, quantities: Quantities, plane: Array) -> list[str]:
@@ -154,22 +184,30 @@ def _supports(scene: Scene, quantities: Quantities, bands: dict[str, _Band], pla
         if isinstance(support, Clamp):
             index = 0 if support.end == "start" else -1
             outward = band.tangent[:, index] * (-1.0 if support.end == "start" else 1.0)
-            across = 0.9 * (band.left[index] - band.right[index]) * band.normal[:, index]
-            drawn.add(symbols.wall(band.centre[:, index], outward, across), band.centre[:, index] + 8.0 * outward)
+            across = (0.5 * (band.left[index] - band.right[index]) + 7.0) * band.normal[:, index]
+            centre = band.centre[:, index] + 0.5 * (band.left[index] + band.right[index]) * band.normal[:, index]
+            ends = (centre + 8.0 * outward - across, centre + 8.0 * outward + across)
+            drawn.add(symbols.wall(centre, outward, across), *ends)
             if any(support.displacement) or any(support.rotation):
                 sideways = abs(outward[0]) > abs(outward[1])
                 beside = np.array([0.0, -float(np.linalg.norm(across)) - 10.0]) if sideways else 12.0 * outward
-                place = band.centre[:, index] + 4.0 * outward + beside
+                place = centre + 4.0 * outward + beside
                 drawn.add([symbols.text("tick", place, "moved")], place - DESCENT)
         else:
-            drawn.add(*_component_support(support, scene.rod(support.rod), quantities.rod(support.rod), band, plane))
+            others = [other for name, other in bands.items() if name != support.rod]
+            rod, found = scene.rod(support.rod), quantities.rod(support.rod)
+            parts, room = _component_support(support, rod, found, band, others, plane)
+            drawn.add(parts, *room)
     return drawn
 
 
 def _component_support(
-    support: Support, rod: Rod, found: RodQuantities, band: _Band, plane: Array
-) -> tuple[list[str], Array]:
-    """A pin, a roller, or a square where it holds along the view alone; its components in words; where that ends."""
+    support: Support, rod: Rod, found: RodQuantities, band: _Band, others: Sequence[_Band], plane: Array
+) -> tuple[list[str], list[Array]]:
+    """A pin, a roller, or a square where it holds along the view alone; its components in words; where that ends.
+
+    It stands below the rod, or on it where it would cover another one.
+    """
     index = int(np.argmin(np.abs(found.station - support.position)))
     scale = float(np.linalg.norm(plane[0]))
     moves, turns = held_directions(support, found)
@@ -178,14 +216,20 @@ def _component_support(
     upright = bool((np.abs(np.cross(*plane) / scale**2 @ turns) > END_ON).any())
     centre, tangent, normal = band.centre[:, index], band.tangent[:, index], band.normal[:, index]
     down = -1.0 if normal[1] > 0.0 or (normal[1] == 0.0 and normal[0] > 0.0) else 1.0
-    outward, apex = down * normal, centre + (band.left[index] if down > 0.0 else band.right[index]) * normal
+    sides = [(down * normal, band.left[index] if down > 0.0 else band.right[index])]
+    sides.append((-down * normal, band.right[index] if down > 0.0 else band.left[index]))
+    middles = [centre + reach * normal + 0.5 * symbols.SUPPORT * side for side, reach in sides]
+    covers = [any(other.covers(middle, 0.3 * symbols.SUPPORT) for other in others) for middle in middles]
+    outward, reach = sides[1 if covers[0] and not covers[1] else 0]
+    apex = centre + reach * normal
     pinned = np.linalg.matrix_rank(seen, tol=END_ON) > 1
     if seen.shape[1] and not pinned and abs(seen[:, 0] @ tangent) > abs(seen[:, 0] @ normal):
         at_end = index in (0, len(found.station) - 1)
         outward = tangent if support.position > 0.5 * rod.length else -tangent
         apex = centre if at_end else apex
     kind = "mean " if support.of == "mean" else ""
-    words = kind + ", ".join(support.components) + (" moved" if any(support.displacement) else "")
+    held = "motion" if len(support.components) == len(COMPONENTS) else ", ".join(support.components)
+    words = kind + held + (" moved" if any(support.displacement) else "")
     if seen.shape[1]:
         parts = symbols.support(apex, outward, rollers=not pinned, upright=upright)
         end = apex + symbols.SUPPORT * outward
@@ -196,7 +240,8 @@ def _component_support(
         place = end + np.array([np.sign(outward[0]) * half, -17.0 if seen.shape[1] else -3.0])
     else:
         place = end + (10.0 if outward[1] < 0.0 else 4.0) * outward
-    return [*parts, symbols.text("tick", place, words)], place + np.array([np.sign(outward[0]) * half, -3.0])
+    reach = np.array([half, 0.0])
+    return [*parts, symbols.text("tick", place, words)], [place - DESCENT - reach, place - DESCENT + reach]
 
 
 def _beds(scene: Scene, quantities: Quantities, plane: Array) -> _Drawn:
@@ -265,6 +310,7 @@ def _load(load: Load, rod: Rod, found: RodQuantities, plane: Array) -> _Drawn:
     towards = np.cross(*plane) / scale**2 @ arrows.direction
     places = plane @ arrows.place
     ends = places.copy()
+    pulling = arrows.pulling or _pulls_an_end(rod, found, arrows.station[0], arrows.direction[:, 0])
     for index, place in enumerate(places.T):
         if arrows.turning and abs(towards[index]) > flat[index]:
             drawn.add(symbols.turning(place, towards[index] > 0.0))
@@ -272,10 +318,10 @@ def _load(load: Load, rod: Rod, found: RodQuantities, plane: Array) -> _Drawn:
             drawn.add(symbols.end_on(place, towards[index] > 0.0))
         else:
             direction = seen[:, index] / flat[index]
-            side = direction if arrows.pulling else -direction
+            side = direction if pulling else -direction
             surface = place + _reach(found, outline(rod.section), plane, arrows.station[index], side) * side
             far = surface + symbols.ARROW * side
-            tip = far if arrows.pulling else surface
+            tip = far if pulling else surface
             drawn.add(symbols.arrow(tip, direction, double=arrows.turning))
             ends[:, index] = far
     middle = ends.shape[1] // 2
@@ -283,9 +329,21 @@ def _load(load: Load, rod: Rod, found: RodQuantities, plane: Array) -> _Drawn:
     if level:
         middle = int(ends[1].argmax())
     x, y = ends[:, middle]
-    words = np.array([x, y + 6.0] if level else [x + 9.0, y if arrows.pulling else y - 8.0])
-    drawn.add([symbols.text("load", words, arrows.text)], *ends.T)
+    width = symbols.LETTER * len(arrows.text)
+    if level:
+        words = np.array([x, y + 6.0])
+    elif ends.shape[1] > 1:  # beyond the ends of the arrows, between which there may be no room
+        words = np.array([x - 0.5 * width, y + 5.0 if y > places[1, middle] else y - 11.0])
+    else:
+        words = np.array([x + 9.0, y if pulling else y - 8.0])
+    drawn.add([symbols.text("load", words, arrows.text)], *ends.T, words, words + np.array([width, 0.0]))
     return drawn
+
+
+def _pulls_an_end(rod: Rod, found: RodQuantities, station: float, direction: Array) -> bool:
+    """Whether a load on an end of a rod points away from it: drawn before it, the arrow would cover the rod."""
+    outward = {0.0: -found.axes[0, 2], rod.length: found.axes[-1, 2]}.get(float(station))
+    return outward is not None and float(outward @ direction) > 1.0 - END_ON
 
 
 def _reach(found: RodQuantities, corners: Array, plane: Array, station: float, side: Array) -> float:
@@ -297,7 +355,7 @@ def _reach(found: RodQuantities, corners: Array, plane: Array, station: float, s
 def _positions(scene: Scene, quantities: Quantities, plane: Array, scale: float, base: float) -> list[str]:
     """Ticks at ends of rods, zones and beds, loads and supports, where the sketch shows a global axis level.
 
-    Numbers that would cover the one before stand a row lower.
+    Numbers that would cover one before stand a row lower.
     """
     axis = int(np.argmax(np.abs(plane[0])))
     if abs(plane[0, axis]) < 1.0 - 1e-9:
@@ -315,15 +373,28 @@ def _positions(scene: Scene, quantities: Quantities, plane: Array, scale: float,
     for pair in scene.contacts:
         found = quantities.rod(pair.first.rod)
         places += list(between(found, found.position, np.array(pair.zone)).T)
-    marks = sorted({(round(scale * float(plane[0] @ place), 6), round(float(place[axis]), 6)) for place in places})
+    marks = _merged(
+        sorted({(round(scale * float(plane[0] @ place), 6), round(float(place[axis]), 6)) for place in places})
+    )
     first, last = marks[0][0], marks[-1][0]
     parts = [f'<line class="axis" x1="{first}" y1="{base:.1f}" x2="{last}" y2="{base:.1f}"/>']
-    taken = [-np.inf, -np.inf]
+    taken = [-np.inf] * ROWS
     for x, label in marks:
         half = 0.5 * symbols.LETTER * len(f"{label:g}")
-        row = 0 if x - half > taken[0] or taken[1] > taken[0] else 1
+        row = next((row for row in range(ROWS) if x - half > taken[row]), int(np.argmin(taken)))
         taken[row] = x + half + 3.0
         parts.append(f'<line class="axis" x1="{x}" y1="{base - 3:.1f}" x2="{x}" y2="{base + 3:.1f}"/>')
         parts.append(f'<text class="tick" x="{x}" y="{base + 14 + 11 * row:.1f}">{label:g}</text>')
     parts.append(f'<text class="tick" x="{last + 28:.1f}" y="{base + 3:.1f}">{AXES[axis]}, mm</text>')
     return parts
+
+
+def _merged(marks: list[tuple[float, float]]) -> list[tuple[float, float]]:
+    """Marks along the axis, of those at all but one place that with the shortest number."""
+    kept = marks[:1]
+    for mark in marks[1:]:
+        if mark[0] - kept[-1][0] > ONE_TICK:
+            kept.append(mark)
+        elif len(f"{mark[1]:g}") < len(f"{kept[-1][1]:g}"):
+            kept[-1] = mark
+    return kept

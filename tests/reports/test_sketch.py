@@ -154,3 +154,41 @@ def test_nothing_is_drawn_outside_the_picture() -> None:
     places = np.array(points, dtype=float)
     assert (places > [left, top]).all()
     assert (places < [left + width, top + height]).all()
+
+
+def test_a_support_stands_on_its_rod_where_another_one_lies_below() -> None:
+    line = Line((0.0, 20.0, 0.0), (400.0, 20.0, 0.0), (0.0, 1.0, 0.0))
+    upper = Rod("upper", line, Rectangle(10.0, 20.0), STEEL, (0.0, 400.0))
+    supports = (Support("beam", 200.0, ("y",)), Support("upper", 200.0, ("y",)), CLAMP, Clamp("upper", "start"))
+    drawn = replace(scene(), rods=(*scene(CLAMP).rods, upper), supports=supports)
+
+    svg = sketch(drawn)
+
+    # 500 wide for 400 mm; upwards is negative
+    tips = [
+        float(points.split()[0].split(",")[1])
+        for points in re.findall(r'<polygon class="hatch" fill="none" points="([^"]*)"', svg)
+    ]
+    assert tips == pytest.approx([12.5, -37.5])
+
+
+def test_numbers_on_the_axis_do_not_cover_one_another() -> None:
+    supports = [Support("beam", position, ("y",)) for position in (100.0, 100.05, 104.0, 108.0)]
+
+    svg = sketch(scene(CLAMP, *supports))
+
+    found = re.findall(r'<text class="tick" x="([^"]*)" y="([^"]*)">([\d.]+)</text>', svg)
+    assert {"100", "104", "108"} <= {text for _, _, text in found}
+    assert "100.05" not in {text for _, _, text in found}  # all but where 100 is
+    rows = {text: y for _, y, text in found}
+    assert len({rows["100"], rows["104"], rows["108"]}) == 3
+
+
+@pytest.mark.parametrize(("height", "beside"), [(20.0, False), (2.0, True)])
+def test_the_name_of_a_slim_rod_stands_beside_it(height: float, beside: bool) -> None:
+    (rod,) = scene(CLAMP).rods
+    drawn = replace(scene(CLAMP), rods=(replace(rod, section=Rectangle(10.0, height)),))
+
+    y = float(re.search(r'<text class="name" x="[^"]*" y="([^"]*)"', sketch(drawn)).group(1))
+
+    assert (y < -0.5 * height * 500.0 / 400.0 - 2.0) == beside
