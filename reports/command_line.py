@@ -341,7 +341,13 @@ def solve(
 
 
 @app.command
-def compare(*cases: str, cache: Path | None = None, no_cache: NoCache = False, no_peers: NoPeers = False) -> int:
+def compare(
+    *cases: str,
+    quick: Annotated[bool, Parameter(name="--quick", negative=())] = False,
+    cache: Path | None = None,
+    no_cache: NoCache = False,
+    no_peers: NoPeers = False,
+) -> int:
     """Solve cases both ways and print how far apart the answers are.
 
     What the same code has answered before is taken from the cache, with the seconds it took then, and says so.
@@ -350,6 +356,9 @@ def compare(*cases: str, cache: Path | None = None, no_cache: NoCache = False, n
     ----------
     cases
         names of cases of the library, or paths of case files
+    quick
+        look roughly instead, in seconds: a rod model of low level, 3D on coarse meshes, how uncertain both are, and no
+        verdict; nothing is kept
     cache
         folder of results; without it, rodcheck in $XDG_CACHE_HOME or ~/.cache
     no_cache
@@ -359,6 +368,8 @@ def compare(*cases: str, cache: Path | None = None, no_cache: NoCache = False, n
     """
     if not cases:
         raise InputError("compare: name at least one case; `rodcheck list` prints those of the library")
+    if quick:
+        return _quick_looks(_load_all(cases))
     from reports.tables import print_comparison
 
     runs = _run_all(_load_all(cases), _cache(cache, no_cache), not no_peers)
@@ -908,6 +919,26 @@ def _run_all(cases: Sequence[Case], cache: Cache | None, peers: bool) -> list[Ca
     for note in dict.fromkeys(notes):
         print(f"rodcheck: {note}", file=sys.stderr)
     return runs
+
+
+def _quick_looks(cases: Sequence[Case]) -> int:
+    """Print a quick look at each case, solved in a process of its own; the exit code."""
+    from reports.processes import ProcessFailed, in_own_process
+    from reports.progress import status
+    from reports.quick import print_quick_look, quick_look
+
+    sound = True
+    for case in cases:
+        try:
+            with status(case.name) as shown:
+                found = in_own_process(quick_look, case, shown.update)
+        except ProcessFailed as error:
+            print(f"rodcheck: {case.name}: {error}", file=sys.stderr)
+            sound = False
+            continue
+        print_quick_look(found)
+        sound = sound and found.sound
+    return 0 if sound else NOT_PASSED
 
 
 def _charted(runs: Sequence[CaseRun | Failure], cache: Cache | None) -> list[CaseRun | Failure]:

@@ -124,7 +124,7 @@ def draw(scene: Scene, quantities: Quantities) -> Picture:
     factor = magnification(quantities)
     shifts = drawn_shifts(scene, quantities, factor)
     limit = max(float(np.linalg.norm(rod.displacement, axis=0).max()) for rod in quantities.rods)
-    plotter = _plotter()
+    plotter: Any = _plotter()
     for rod in scene.rods:
         found = quantities.rod(rod.name)
         corners = deformed_surface(rod, found, factor, shifts[rod.name])
@@ -201,7 +201,8 @@ def _plotter() -> pyvista.Plotter:
     pyvista.vtk_verbosity("off")
     plotter: Any = pyvista.Plotter(off_screen=True, window_size=list(SIZE))
     plotter.set_background("white")
-    return plotter
+    empty: pyvista.Plotter = plotter
+    return empty
 
 
 def _add_surroundings(
@@ -215,8 +216,9 @@ def _add_surroundings(
     _add_loads(plotter, scene, quantities, factor, shifts)
 
 
-def _photographed(plotter: pyvista.Plotter, scene: Scene, quantities: Quantities) -> bytes:
+def _photographed(drawn: pyvista.Plotter, scene: Scene, quantities: Quantities) -> bytes:
     """The picture as PNG, seen across the plane that shows most, with a scale; the plotter is closed."""
+    plotter: Any = drawn  # some of its methods are wrapped in a way that hides their arguments
     right, up = view_plane(scene, quantities)
     size = extent(quantities)
     # Sections that are not small beside the scene, with their clamps, need more room.
