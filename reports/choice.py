@@ -34,8 +34,8 @@ class ChosenElement:
     ----------
     start, end : arc length, mm
     level, order : k of h_k and p
-    over_section : energy in the fields of the highest degree, as a part of the energy of all rods
-    along : energy that the next order would find, likewise
+    over_section : energy in the fields of the two highest degrees, as a part of the energy of all rods
+    along : energy that further orders would find, likewise
     pressed : whether contact presses on it, or next to it
     """
 
@@ -51,8 +51,8 @@ class ChosenElement:
     def reason(self) -> str:
         """Why it has its level and order."""
         pressed = "contact presses on it or beside it; " if self.pressed else ""
-        share = f"its fields of degree {self.level} hold {100.0 * self.over_section:.2g} % of the energy"
-        return f"{pressed}{share}, order {self.order + 1} would find {100.0 * self.along:.2g} %"
+        share = f"its fields of degree {self.level - 1} and {self.level} hold {100.0 * self.over_section:.2g} %"
+        return f"{pressed}{share} of the energy, orders above {self.order} would find {100.0 * self.along:.2g} %"
 
 
 def run_auto(case: Case, tolerance: float, solved: Callable[[Solution], None]) -> tuple[Run, AdaptiveSolution]:

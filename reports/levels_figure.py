@@ -52,7 +52,7 @@ def levels_figure(found: AdaptiveSolution) -> go.Figure:
 
 def _hover(element: ChosenElement) -> str:
     where = f"{element.start:.4g} to {element.end:.4g} mm: h{element.level}, p = {element.order}"
-    return f"{where}<br>{element.reason.replace('; ', '<br>').replace(', order', '<br>order')}"
+    return f"{where}<br>{element.reason.replace('; ', '<br>').replace(', orders', '<br>orders')}"
 
 
 def write_levels(found: AdaptiveSolution, path: Path) -> Path:

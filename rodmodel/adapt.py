@@ -2,7 +2,8 @@
 
 At a clamped section and under the end of another rod the three-dimensional solution is singular or nearly so; it decays
 over about one section height (Saint-Venant). Elements of a fifth of the height and of one height next to it, instead of
-one long one, take the error of the paper's mesh from 0.1 % to 0.02 % at the same order.
+one long one, take the error of the paper's mesh from 0.1 % to 0.02 % at the same order. Under the end of another rod
+the element beyond it counts as much as the one below it: a long one there makes 0.1 %.
 """
 
 from __future__ import annotations
@@ -39,7 +40,7 @@ def _graded_rod(scene: Scene, rod: Rod) -> Rod:
         zone = np.array(pair.zone)
         start, end = sorted(zone if rod.name == pair.first.rod else on_second(scene, pair, zone))
         new += [start, end]
-        new += [station for part in FROM_ZONE_END for station in (start + height * part, end - height * part)]
+        new += [at + sign * height * part for at in (start, end) for sign in (-1.0, 1.0) for part in FROM_ZONE_END]
     # A border closer to a given one than the shortest element asked for would add nothing but a sliver.
     kept = list(rod.element_borders)
     for border in sorted(new):

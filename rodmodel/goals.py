@@ -9,13 +9,15 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from cases.scene import Clamp, Scene, station_of
+from cases.scene import Clamp, Rod, Scene, station_of
 from rodmodel.solution import Solution
 
 Array = NDArray[np.float64]
 
 # Even steps along a rod at which its deflection is looked at; a parabola finds the largest in between.
 STEPS = 32
+# Deflections and moments below this part of what they come with (turning sections; forces times lengths) are none.
+ROUND_OFF = 1e-9
 
 
 @dataclass(frozen=True)
@@ -24,8 +26,8 @@ class Goal:
 
     Attributes
     ----------
-    kind : resultant of a pair's contact pressure (N); largest displacement of a rod's centre line (mm); largest bending
-        moment that a clamp exerts on a rod (N mm); end of a stretch in contact (mm along the pair's first rod)
+    kind : resultant of a pair's contact pressure (N); largest displacement of a rod's centre line (mm); largest moment
+        that a clamp exerts on a rod (N mm); end of a stretch in contact (mm along the pair's first rod)
     of : name of the pair or rod
     number : of the edge, from 0 at the zone's start
     """
@@ -49,25 +51,26 @@ def goals(solution: Solution) -> Mapping[Goal, float]:
         found[Goal("contact force", pair.name)] = float(np.linalg.norm(points.normal @ points.force))
     for rod in scene.rods:
         moved = solution.displacement(rod.name, np.linspace(0.0, rod.length, 1 + STEPS))
-        found[Goal("deflection", rod.name)] = _peak(np.linalg.norm(moved, axis=0))
-        moments = clamp_moments(solution, scene, rod.name)
-        if moments:
-            found[Goal("clamp moment", rod.name)] = max(moments)
+        deflection = _peak(np.linalg.norm(moved, axis=0))
+        if deflection > ROUND_OFF * max(np.abs(each).max() for each in solution.states[rod.name].coefficients):
+            found[Goal("deflection", rod.name)] = deflection
+        moment = clamp_moment(solution, scene, rod)
+        if moment > 0.0:
+            found[Goal("clamp moment", rod.name)] = moment
     for pair in scene.contacts:
         ends = [at for each in solution.stretches if each.pair == pair.name for at in (each.start, each.end)]
         found |= {Goal("contact edge", pair.name, number): end for number, end in enumerate(ends)}
     return found
 
 
-def clamp_moments(solution: Solution, scene: Scene, rod: str) -> list[float]:
-    """Magnitudes of the bending moments that the rod's clamps exert on it, N mm."""
-    found = []
-    for support in scene.supports:
-        if isinstance(support, Clamp) and support.rod == rod:
-            station = station_of(support, scene.rod(rod))
-            axes = solution.frame(rod, np.array([station]))[1][0]
-            found.append(float(np.linalg.norm(axes[:2] @ solution.reaction(rod, station)[3:])))
-    return found
+def clamp_moment(solution: Solution, scene: Scene, rod: Rod) -> float:
+    """Largest of the moments that the rod's clamps exert on it, N mm; 0 where there is none but round-off."""
+    stations = [
+        station_of(support, rod) for support in scene.supports if isinstance(support, Clamp) and support.rod == rod.name
+    ]
+    reactions = np.array([solution.reaction(rod.name, station) for station in stations]).reshape(-1, 2, 3)
+    forces, moments = np.linalg.norm(reactions, axis=2).max(axis=0, initial=0.0)
+    return float(moments) if moments > ROUND_OFF * forces * rod.length else 0.0
 
 
 def _peak(values: Array) -> float:

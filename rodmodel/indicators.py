@@ -12,7 +12,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from rodmodel.pairing import facing_points
+from cases.scene import SectionForce, SectionMoment
+from rodmodel.assembly import AssembledRod
+from rodmodel.holds import held_sections
+from rodmodel.pairing import facing_points, on_second
 from rodmodel.section import axial_modulus
 from rodmodel.shape import extents
 from rodmodel.solution import Solution
@@ -23,20 +26,34 @@ BoolArray = NDArray[np.bool_]
 
 # How far beside an element contact may press to count as pressing on it, in heights or widths of the section.
 BESIDE = 0.2
+# Energy from one order to the next falls at least by this; slower series have a corner, which orders do not resolve.
+SLOWEST = 0.8
 
 
 @dataclass(frozen=True, eq=False)
 class RodIndicators:
-    """Energy in the highest functions of each element of a rod, as a part of the energy of all rods.
+    """What the elements of a rod hold in their highest functions, as parts of the energy of all rods.
 
     Attributes
     ----------
-    over_section : in the fields whose degree in (x, y) is the element's level, shape (n_elements,)
-    along : what the next order would find, going by how the last two fall off, shape (n_elements,)
+    energy : of each element in all, shape (n_elements,)
+    by_degree : energy in the fields of each degree in (x, y), shape (n_elements, highest level + 1)
+    levels : shape (n_elements,)
+    along : energy that all further orders would find, going by how the last two fall off, shape (n_elements,)
+    fall : by what factor it falls with each order, shape (n_elements,)
     """
 
-    over_section: Array
+    energy: Array
+    by_degree: Array
+    levels: NDArray[np.int64]
     along: Array
+    fall: Array
+
+    @property
+    def over_section(self) -> Array:
+        """Energy in the fields of the element's two highest degrees, as one alone may vanish, shape (n_elements,)."""
+        number = np.arange(len(self.levels))
+        return np.asarray(self.by_degree[number, self.levels] + self.by_degree[number, self.levels - 1])
 
 
 def indicators(solution: Solution) -> Mapping[str, RodIndicators]:
@@ -45,10 +62,15 @@ def indicators(solution: Solution) -> Mapping[str, RodIndicators]:
     result = {}
     for name, assembled in solution.system.rods.items():
         scale = axial_modulus(assembled.rod.material) / whole
-        pairs = list(zip(assembled.elements, solution.states[name].coefficients, strict=True))
-        over_section = np.array([unit_energy(element, _highest_fields(element, values)) for element, values in pairs])
-        along = np.array([_next_order(element, values) for element, values in pairs])
-        result[name] = RodIndicators(scale * over_section, scale * along)
+        levels = np.array([element.fields.level for element in assembled.elements])
+        by_degree = np.zeros((len(levels), levels.max() + 1))
+        energy, along, fall = np.empty((3, len(levels)))
+        for number, (element, values) in enumerate(
+            zip(assembled.elements, solution.states[name].coefficients, strict=True)
+        ):
+            energy[number], by_degree[number, : element.fields.level + 1] = _energies(element, values)
+            along[number], fall[number] = _further_orders(element, values)
+        result[name] = RodIndicators(scale * energy, scale * by_degree, levels, scale * along, fall)
     return result
 
 
@@ -71,25 +93,68 @@ def pressed_elements(solution: Solution) -> Mapping[str, BoolArray]:
     return found
 
 
+def elements_near_corners(solution: Solution) -> Mapping[str, BoolArray]:
+    """By rod name, whether an element's middle is within a section's height of where fields are singular.
+
+    Held and loaded sections, ends of zones and of stretches in contact.
+    """
+    scene = solution.scene
+    found = {}
+    for name, assembled in solution.system.rods.items():
+        places = [held.station for held in held_sections(scene, assembled.rod)]
+        loads = [load for load in scene.loads if isinstance(load, SectionForce | SectionMoment)]
+        places += [load.position for load in loads if load.rod == name]
+        for pair in scene.contacts:
+            ends = [at for each in solution.stretches if each.pair == pair.name for at in (each.start, each.end)]
+            stations = np.array([*pair.zone, *ends])
+            if name == pair.first.rod:
+                places += stations.tolist()
+            elif name == pair.faces[-1].rod:
+                places += on_second(scene, pair, stations).tolist()
+        found[name] = _within(_height(assembled), places, assembled)
+    return found
+
+
+def _within(reach: float, places: list[float], assembled: AssembledRod) -> BoolArray:
+    middle = 0.5 * (assembled.borders[1:] + assembled.borders[:-1])
+    return np.asarray((np.abs(middle[:, None] - np.array(places)) < reach).any(axis=1))
+
+
+def _height(assembled: AssembledRod) -> float:
+    x_min, x_max, y_min, y_max = extents(assembled.rod.section)
+    return max(x_max - x_min, y_max - y_min)
+
+
 def unit_energy(element: Element, values: Array) -> float:
     """Elastic energy of an element for unit axial modulus; `values` of shape (order + 1, n_fields)."""
-    nodal, bubbles = values[:2].ravel(), values[2:].ravel()
+    return float(_unit_energies(element, values[..., None])[0])
+
+
+def _unit_energies(element: Element, values: Array) -> Array:
+    """Elastic energies of an element for unit axial modulus, shape (n,); `values` of shape (order + 1, n_fields, n)."""
+    count = values.shape[-1]
+    nodal, bubbles = values[:2].reshape(-1, count), values[2:].reshape(-1, count)
     # L^T b + L^-1 K_bn n, in which |.|^2 / 2 is what condensation leaves over of the energy.
     factors = zip(element.bubbles.groups, element.bubbles.blocks, strict=True)
     half = np.concatenate([block.T @ bubbles[group] for group, block in factors])
     half += element.half_coupling @ nodal
-    return 0.5 * float(nodal @ element.condensed @ nodal + half @ half)
+    return 0.5 * np.asarray((nodal * (element.condensed @ nodal)).sum(axis=0) + (half**2).sum(axis=0))
 
 
-def _highest_fields(element: Element, values: Array) -> Array:
+def _energies(element: Element, values: Array) -> tuple[float, Array]:
+    """Unit energy in all, and in the fields of each degree from 0 to the element's level alone."""
     _, i, j = element.fields.table
-    return np.where(i + j == element.fields.level, values, 0.0)
+    of_degree = (i + j)[:, None] == np.arange(-1, element.fields.level + 1)
+    of_degree[:, 0] = True
+    found = _unit_energies(element, values[..., None] * of_degree)
+    return float(found[0]), found[1:]
 
 
-def _next_order(element: Element, values: Array) -> float:
-    """What the next order would find, going by how the last two fall off."""
+def _further_orders(element: Element, values: Array) -> tuple[float, float]:
+    """Unit energy that all further orders would find, and by what factor it falls with each, going by the last two."""
     last, both = (_surplus(element, values, orders) for orders in (1, 2))
-    return last * min(1.0, last / (both - last)) if both > last else last
+    fall = min(SLOWEST, last / (both - last)) if both > last else SLOWEST
+    return last * fall / (1.0 - fall), fall
 
 
 def _surplus(element: Element, values: Array, orders: int) -> float:

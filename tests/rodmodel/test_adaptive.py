@@ -8,7 +8,8 @@ import pytest
 import rodmodel as rm
 from cases.loader import load_case
 from cases.scene import Scene
-from rodmodel.adaptive import AdaptiveSolution, level_step, solve_to
+from rodmodel.adaptive import AdaptiveSolution, Look, levels_for, solve_to
+from rodmodel.remaining import Share
 
 STEEL = rm.Material(200e3, 0.3)
 
@@ -52,6 +53,21 @@ def test_high_levels_stand_where_fields_are_steep():
     assert lower.levels[0] > lower.levels[middle]
 
 
+def test_what_equilibrium_fixes_is_known():
+    """The moment in a cantilever's clamp is force times length at every level, and no error may be invented."""
+    rod = rm.Rod("bar", rm.Line((0, 0, 0), (100, 0, 0), (0, 1, 0)), rm.Rectangle(10, 10), STEEL, (0, 50, 100))
+    load = rm.SectionForce("bar", 100, (0, -500, 0))
+    found = solve_to(rm.Scene("bar", (rod,), (rm.Clamp("bar", "start"),), (load,), ()), 1e-2)
+
+    moment = next(each for each in found.estimates if each.goal.kind == "clamp moment")
+    assert moment.value == pytest.approx(500.0 * 100.0, rel=1e-9)
+    assert moment.relative < 1e-7
+
+
+def test_most_of_what_is_paid_for_is_the_last_step():
+    assert [step.level for step in solve_to(paper("e50-g0"), 1e-3).steps] == [2, 4]
+
+
 def test_estimates_hold_for_a_bar_that_is_known_exactly():
     """Saint-Venant's bar in tension with free sides: h1 has it exactly, and the estimate must not invent an error."""
     rod = rm.Rod("bar", rm.Line((0, 0, 0), (100, 0, 0), (0, 1, 0)), rm.Rectangle(10, 10), STEEL, (0, 50, 100))
@@ -91,7 +107,12 @@ def test_tolerances_out_of_reach_are_refused(tolerance):
 
 
 def test_the_next_level_is_as_high_as_the_error_asks_for():
-    assert level_step(2, np.inf, 2.0) == 2  # nothing is known yet
-    assert level_step(4, 2.0, 2.0) == 2  # (6/4)^2 = 2.25
-    assert level_step(4, 3.0, 2.0) == 4  # (8/4)^2 = 4
-    assert level_step(6, 100.0, 2.0) == 2  # there is no level above 8
+    # all near corners: an error e at h4 is (4 / k)^2 e at hk, of which 0.8 of the tolerance is asked
+    corners = Share(4, np.array([0.0, 0.0, 0.0, 0.0, 3e-3]), near=True, usual=2.0, least=2.0, most=2.0)
+    seen = Look({}, {}, {}, (corners,), ())
+
+    assert levels_for(seen, 1.7e-3, 1e-3)[0][0] == 6  # 0.76e-3
+    assert levels_for(seen, 3.0e-3, 1e-3)[0][0] == 8  # 0.75e-3
+    (near, _), at_best = levels_for(seen, 1.0, 1e-3)
+    assert near == 10
+    assert at_best == pytest.approx(0.16)

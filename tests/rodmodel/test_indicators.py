@@ -5,7 +5,7 @@ import pytest
 
 import rodmodel as rm
 from cases.loader import load_case
-from rodmodel.indicators import indicators, pressed_elements, unit_energy
+from rodmodel.indicators import elements_near_corners, indicators, pressed_elements, unit_energy
 from rodmodel.section import axial_modulus
 
 STEEL = rm.Material(200e3, 0.3)
@@ -31,9 +31,20 @@ def test_the_elements_together_hold_the_energy_of_the_rod():
 
 def test_highest_fields_count_most_at_a_clamp():
     # per length: the warping of shear, of degree 3, goes on along the bar; what the clamp adds does not
-    shown = indicators(cantilever(4, TIP))["bar"].over_section / np.array([2, 8, 90, 100])
+    highest = indicators(cantilever(4, TIP))["bar"].by_degree[:, -1] / np.array([2, 8, 90, 100])
 
-    assert shown.argmax() == 0
+    assert highest.argmax() == 0
+
+
+def test_energy_by_degree_counts_two_degrees_as_one_may_vanish():
+    shown = indicators(cantilever(4, TIP))["bar"]
+
+    np.testing.assert_allclose(shown.over_section, shown.by_degree[:, 2] + shown.by_degree[:, 3], rtol=1e-12)
+
+
+def test_elements_next_to_the_clamp_and_the_loaded_end_are_near_corners():
+    # within one height, 10 mm, of 0 and of 200 mm with their middle
+    assert elements_near_corners(cantilever(4, TIP))["bar"].tolist() == [True, True, False, False]
 
 
 def test_a_cubic_deflection_needs_no_more_than_order_four_away_from_the_clamp():

@@ -1,52 +1,52 @@
-"""From the differences between steps to all that further levels would add."""
+"""From the energy that fields of each degree hold to what all further levels would add."""
 
 import numpy as np
 import pytest
 
-from rodmodel.remaining import USUAL, fitted_power, remaining_errors
+from rodmodel.remaining import BELIEVED, Share, fitted_power
 
 
-@pytest.mark.parametrize("power", [0.7, 1.0, 1.9])
-def test_three_levels_tell_an_error_that_falls_by_a_power(power):
-    levels = [2, 4, 6]
-    values = np.array([[1.0 + level**-power, 5.0 - 3.0 * level**-power] for level in levels])
-
-    errors, found = remaining_errors(levels, values)
-
-    np.testing.assert_allclose(found, power, rtol=1e-9)
-    np.testing.assert_allclose(errors, [6**-power, 3.0 * 6**-power], rtol=1e-9)
+def falling(power: float, level: int) -> np.ndarray:
+    """Energies by degree, pairs added up, of a solution whose error at level k is k^-power."""
+    error = np.arange(2, level + 1, 2.0) ** -power
+    by_degree = np.zeros(level + 1)
+    by_degree[4::2] = -np.diff(error)
+    return by_degree
 
 
-def test_two_levels_take_the_usual_power():
-    values = np.array([[1.0 + level**-USUAL] for level in (2, 4)])
+@pytest.mark.parametrize("power", [0.7, 2.0, 5.0])
+def test_two_pairs_of_degrees_tell_the_power_of_an_error_that_falls_by_one(power):
+    last, before = falling(power, 6)[[6, 4]]
 
-    errors, _ = remaining_errors([2, 4], values)
-
-    np.testing.assert_allclose(errors, 4**-USUAL, rtol=1e-12)
-
-
-def test_nothing_is_known_of_a_single_step_or_a_goal_that_has_just_appeared():
-    assert np.isinf(remaining_errors([2], np.array([[1.0]]))[0]).all()
-    assert np.isinf(remaining_errors([2, 4], np.array([[np.nan], [1.0]]))[0]).all()
+    # as near as the powers tried lie
+    assert fitted_power(6, last / before) == pytest.approx(power, abs=0.01)
 
 
-def test_a_difference_that_happens_to_vanish_is_not_believed():
-    values = np.array([[1.0, 1.0], [1.1, 1.1], [1.1, 1.14]])
+def test_a_known_power_tells_what_is_left_over():
+    share = Share(8, falling(2.0, 8), near=True, usual=2.0, least=2.0, most=2.0)
 
-    errors, _ = remaining_errors([2, 4, 6], values)
-
-    assert errors[0] > 0.1 * errors[1]
-
-
-def test_differences_that_do_not_fall_leave_a_large_error():
-    values = np.array([[1.0], [2.0], [3.0]])
-
-    errors, power = remaining_errors([2, 4, 6], values)
-
-    assert power == 0.5
-    assert errors[0] > 1.0
+    assert share.left_at(8) == pytest.approx(8**-2.0, rel=1e-12)
+    assert share.left_at(10) == pytest.approx(10**-2.0, rel=1e-12)
 
 
-def test_fitted_power_stays_within_its_limits():
-    assert fitted_power([2, 4, 6], 0.0) == USUAL
-    assert fitted_power([2, 4, 6], 10.0) == 0.5
+def test_of_a_power_above_one_only_a_part_is_believed():
+    share = Share(6, falling(5.0, 6), near=False, usual=4.0, least=1.0, most=8.0)
+
+    assert share.power == pytest.approx(1.0 + BELIEVED * 4.0, abs=0.01)
+    assert share.left_at(6) > 6**-5.0
+
+
+def test_level_4_tells_no_power_yet():
+    share = Share(4, falling(5.0, 4), near=False, usual=3.0, least=1.0, most=8.0)
+
+    assert share.power == 3.0
+
+
+def test_energy_that_does_not_fall_leaves_the_least_power():
+    constant = np.ones(7)
+
+    assert Share(6, constant, near=False, usual=4.0, least=1.0, most=8.0).power == 1.0
+
+
+def test_nothing_is_said_of_elements_left_at_the_lowest_level():
+    assert Share(2, np.ones(3), near=False, usual=4.0, least=1.0, most=8.0).left_at(2) == 0.0
