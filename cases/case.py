@@ -135,6 +135,7 @@ class Case:
     compare : what rod model and 3D reference are held against each other by
     published : values from the literature
     independent : file in `cases/truth` with 3D values made outside this project, if there is one
+    text : the case file itself; '' for a case that was made otherwise
     """
 
     name: str
@@ -145,3 +146,4 @@ class Case:
     compare: tuple[Check, ...]
     published: tuple[Published, ...]
     independent: Path | None
+    text: str = ""

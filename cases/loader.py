@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import tomllib
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -54,9 +55,9 @@ def load_case(name_or_path: str | Path) -> Case:
     if not FILE_NAME.fullmatch(path.stem):
         remedy = "rename it with letters, digits and _ . , = ( ) + - or blanks after the first, 100 at most"
         raise CaseError(f"{source}: found the file name {shown(path.name)}; {remedy}")
-    content = _read(path, source)
+    text, content = _read(path, source)
     try:
-        return case_from(path.stem, checked_form(content), TRUTH)
+        return replace(case_from(path.stem, checked_form(content), TRUTH), text=text)
     except FormError as error:
         others = error.count - 1
         more = f" (and {others} more problem{'s' if others > 1 else ''})" if others else ""
@@ -85,8 +86,8 @@ def _find(name_or_path: str | Path) -> tuple[Path, str]:
     raise CaseError(f"{shown(given)}: found neither a case of the library nor a file; {hint}, and a path will do too")
 
 
-def _read(path: Path, source: str) -> dict[str, Any]:
-    """Content of a TOML file that is not empty, nor deeper than any case."""
+def _read(path: Path, source: str) -> tuple[str, dict[str, Any]]:
+    """Text and content of a TOML file that is not empty, nor deeper than any case."""
     try:
         size = path.stat().st_size
         if size > LARGEST_FILE:
@@ -110,7 +111,7 @@ def _read(path: Path, source: str) -> dict[str, Any]:
         raise CaseError(
             f"{source}: found an empty file; copy a case of the library ({LIBRARY.name}/*.toml) and edit it"
         )
-    return content
+    return text, content
 
 
 def _is_deep(content: dict[str, Any]) -> bool:

@@ -1,7 +1,7 @@
 """What the report's pages have in common: look, plotly's script, figures as data, marks of verdicts.
 
-A page fetches nothing: plotly's script, styles, pictures and data all stand in it, and its content security policy
-forbids the rest.
+A page fetches nothing: styles, pictures and data stand in it, plotly's script too or in one file beside the pages that
+share it, and its content security policy forbids the rest.
 """
 
 from __future__ import annotations
@@ -19,12 +19,20 @@ from markupsafe import Markup
 from plotly.offline import get_plotlyjs
 
 from reports.comparison import Verdict
+from reports.store import write_whole
 
 HERE = Path(__file__).parent
+# Plotly's script, 5 MB, as a file of the report's folder.
+PLOTLY_FILE = "plotly.min.js"
 
 
-def rendered(template: str, figures: Mapping[str, go.Figure], **content: object) -> str:
-    """A page as HTML: a template with its content, and the figures by the id of their place."""
+def rendered(template: str, figures: Mapping[str, go.Figure], plotly_file: str = "", **content: object) -> str:
+    """A page as HTML: a template with its content, and the figures by the id of their place.
+
+    Parameters
+    ----------
+    plotly_file : where the page finds plotly's script, relative to itself; without it the script stands in the page
+    """
     environment = Environment(
         loader=FileSystemLoader(HERE),
         autoescape=select_autoescape(default=True, default_for_string=True),
@@ -34,12 +42,26 @@ def rendered(template: str, figures: Mapping[str, go.Figure], **content: object)
     environment.globals.update(verdict=_verdict_mark, verdicts=_verdict_marks)
     return environment.get_template(template).render(
         css=Markup((HERE / "page.css").read_text(encoding="utf-8")),
-        plotly=Markup(get_plotlyjs()),
-        figures=_script_json({place: _plain(figure) for place, figure in figures.items()}),
+        plotly=Markup("" if plotly_file else get_plotlyjs()),
+        plotly_file=plotly_file,
+        figures=script_json({place: _plain(figure) for place, figure in figures.items()}),
         date=datetime.now(UTC).strftime("%d %B %Y, %H:%M UTC"),
         version=_version(),
         **content,
     )
+
+
+def write_plotly(folder: Path) -> None:
+    """Write plotly's script into a folder, unless it is there.
+
+    Raises
+    ------
+    OSError
+        if the folder or the file cannot be written.
+    """
+    script, path = get_plotlyjs(), folder / PLOTLY_FILE
+    if not (path.is_file() and path.read_text(encoding="utf-8") == script):
+        write_whole(path, script)
 
 
 def _plain(figure: go.Figure) -> dict[str, Any]:
@@ -54,7 +76,7 @@ def _version() -> str:
         return "not installed"
 
 
-def _script_json(value: object) -> Markup:
+def script_json(value: object) -> Markup:
     """JSON that may stand inside a script element."""
     text = json.dumps(value, separators=(",", ":"), allow_nan=False)
     return Markup(text.replace("<", "\\u003c"))

@@ -1,58 +1,31 @@
-"""The report: one self-contained HTML page, and the results as JSON beside it."""
+"""The report: a folder of pages that need no network, and the results as JSON beside them."""
 
 from __future__ import annotations
 
 import base64
 import json
 import math
-from collections import Counter
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
 from pathlib import Path
-from typing import Any
+from urllib.parse import quote
 
-import numpy as np
-import plotly.graph_objects as go
-
-from cases.case import Quantity
-from cases.scene import ContactPair
-from reports.chart.page import chart_part, write_chart_numbers
-from reports.comparison import Comparison
-from reports.figures import deflection_figure, moment_figure, pressure_figure
-from reports.formatting import (
-    MODEL_NAMES,
-    gap,
-    grades,
-    measure,
-    number,
-    opposite,
-    seconds,
-    stretches,
-    title,
-    values_with_unit,
-)
-from reports.html import rendered
+from reports.chart.page import write_chart_numbers
+from reports.html import rendered, write_plotly
+from reports.nightly.drift import Drift
+from reports.nightly.rows import Row
+from reports.pages.case import DrawnPicture, case_page
+from reports.pages.history import history_part
+from reports.pages.overview import case_address, case_file, overview_row, states_to_choose
+from reports.pages.theory import theory_page
 from reports.peers import as_json
-from reports.peers_table import peers_summary, peers_table
+from reports.peers_table import peers_summary
 from reports.processes import ProcessFailed, Progress, in_own_process
-from reports.quantities import DEFINITIONS
 from reports.result import result
-from reports.runner import ROD_REPEATS, CaseRun, Failure, Run
-from reports.section_table import section_table
-from reports.sketch import scene_sketch
+from reports.runner import CaseRun, Failure
 from reports.store import write_whole
-from reports.truth import independent_values
 
-DEFLECTION_CAPTION = "Below: difference from the 3D of this run on its finest mesh, in micrometres."
-ALONE_CAPTION = "There is no 3D of this run to draw differences from."
-PRESSURE_CAPTION = (
-    "At an edge inside the zone the pressure falls like the square root of the distance; at the corner of a bar "
-    "it is singular, and no mesh gives its value there."
-)
-MOMENT_CAPTION = (
-    "Above: from equilibrium of loads and contact forces. Below: how far the moment of the computed stress is from "
-    "it, a check of each model on itself; it is largest at clamps, whose corners are singular."
-)
+OVERVIEW, THEORY = "index.html", "theory.html"
 # Pages that may stand beside the report, by file name: what they are called and what they say.
 PAGES = {
     "verification.html": (
@@ -70,66 +43,90 @@ PAGES = {
 }
 
 
-@dataclass(frozen=True)
-class DrawnPicture:
-    """A PNG picture ready for the page, or, with no data, why there is none."""
-
-    data: str
-    width: int
-    height: int
-    magnification: str
-    problem: str
-
-
 def write_report(
-    runs: Sequence[CaseRun | Failure], output: Path, pages: Sequence[str] = (), moved: Sequence[str] | None = None
+    runs: Sequence[CaseRun | Failure],
+    output: Path,
+    pages: Sequence[str] = (),
+    moved: Sequence[Drift] | None = None,
+    rows: Sequence[Row] = (),
 ) -> Path:
-    """Write `index.html` and `results/*.json` into the folder `output`; returns the page's path.
+    """Write the overview, the cases' pages and that of theory into the folder `output`; returns the overview's path.
+
+    The overview is written last: whoever finds it finds the pages that it leads to.
 
     Parameters
     ----------
     pages : file names of the pages beside it, those of `PAGES` that there are
-    moved : what moved since earlier runs, a line each; None where nobody looked
+    moved : what moved since earlier runs; None where nobody looked
+    rows : the history of these cases, oldest run first, this run included
 
     Raises
     ------
     OSError
         if the folder or a file cannot be written.
     """
-    page = render(runs, pictures(runs), pages, moved)
+    write_plotly(output)
     for run in runs:
         if isinstance(run, CaseRun):
             _write_results(run, output / "results")
-    write_whole(output / "index.html", page)
-    return output / "index.html"
+    for name, page in case_pages(runs, pictures(runs), pages, moved, rows).items():
+        write_whole(output / case_file(name), page)
+    write_whole(output / THEORY, theory_page(_site(pages)))
+    write_whole(output / OVERVIEW, overview_page(runs, pages, moved))
+    return output / OVERVIEW
 
 
-def render(
+def overview_page(
+    runs: Sequence[CaseRun | Failure], pages: Sequence[str] = (), moved: Sequence[Drift] | None = None
+) -> str:
+    """The overview as HTML, with links to the pages beside it and, where it is known, what moved since earlier runs."""
+    return rendered(
+        "pages/overview.html.jinja",
+        {},
+        cases=[overview_row(run, moved) for run in runs],
+        states=states_to_choose(runs, moved),
+        peers=peers_summary(runs),
+        pages=[(page, *PAGES[page]) for page in pages],
+        moved=None if moved is None else _moved(runs, moved),
+        site=_site(pages),
+        here="All cases",
+    )
+
+
+def case_pages(
     runs: Sequence[CaseRun | Failure],
     drawn: Mapping[str, DrawnPicture],
     pages: Sequence[str] = (),
-    moved: Sequence[str] | None = None,
-) -> str:
-    """The page as HTML, with links to the pages beside it and, where it is known, what moved since earlier runs."""
-    cases, figures = [], {}
-    for index, run in enumerate(runs, start=1):
-        anchor = f"case-{index}"
-        if isinstance(run, Failure):
-            cases.append(_failed_case(run, anchor))
-            continue
-        case, found = _case(run, anchor, drawn[run.case.name])
-        cases.append(case)
-        figures.update(found)
-    return rendered(
-        "page.html.jinja",
-        figures,
-        cases=cases,
-        peers=peers_summary(runs),
-        definitions=DEFINITIONS.values(),
-        repeats=ROD_REPEATS,
-        pages=[(page, *PAGES[page]) for page in pages],
-        moved=moved,
-    )
+    moved: Sequence[Drift] | None = None,
+    rows: Sequence[Row] = (),
+) -> dict[str, str]:
+    """The pages of all cases as HTML, by the case's name."""
+    site = [(f"../{address}", name) for address, name in _site(pages)]
+    found = {}
+    for index, run in enumerate(runs):
+        beside = [(index - 1, "prev"), (index + 1, "next")]
+        neighbours = [
+            (quote(case_file(runs[other].case.name).name), runs[other].case.title, way)
+            for other, way in beside
+            if 0 <= other < len(runs)
+        ]
+        history = history_part(run.case.name, rows, moved or ())
+        found[run.case.name] = case_page(run, drawn.get(run.case.name), site, neighbours, history)
+    return found
+
+
+def _site(pages: Sequence[str]) -> list[tuple[str, str]]:
+    """Addresses and names of the report's pages, besides those of cases."""
+    return [(OVERVIEW, "All cases"), (THEORY, "Theory and glossary"), *((page, PAGES[page][0]) for page in pages)]
+
+
+def _moved(runs: Sequence[CaseRun | Failure], drifts: Sequence[Drift]) -> list[tuple[str, str, list[str]]]:
+    """What moved, case by case: its name, the address of its page, a line for everything that moved."""
+    here = {run.case.name for run in runs}
+    lines: dict[str, list[str]] = {}
+    for drift in drifts:
+        lines.setdefault(drift.case, []).append(f"{drift.of}: {drift.text}")
+    return [(name, case_address(name) if name in here else "", found) for name, found in lines.items()]
 
 
 def pictures(runs: Sequence[CaseRun | Failure]) -> dict[str, DrawnPicture]:
@@ -152,193 +149,6 @@ def _draw_all(runs: Sequence[CaseRun], progress: Progress) -> dict[str, DrawnPic
         data = base64.b64encode(picture.png).decode("ascii")
         drawn[run.case.name] = DrawnPicture(data, *SIZE, f"{picture.magnification:g}", "")
     return drawn
-
-
-def _failed_case(run: Failure, anchor: str) -> dict[str, Any]:
-    return {
-        "anchor": anchor,
-        "name": run.case.name,
-        "title": run.case.title,
-        "description": run.case.description,
-        "counts": {},
-        "headline": [[]] * 5,
-        "failure": run.reason,
-        "sketch": "",
-        "sketch_caption": "",
-    }
-
-
-def _case(run: CaseRun, anchor: str, picture: DrawnPicture) -> tuple[dict[str, Any], dict[str, go.Figure]]:
-    """What the template needs to know of a case, and its figures by the id of their place."""
-    case = run.case
-    truth = None if case.independent is None else independent_values(case.independent, case.scene)
-    drawn = [
-        (
-            "Deflection of the centre lines",
-            ALONE_CAPTION if run.refusal else DEFLECTION_CAPTION,
-            deflection_figure(run, truth),
-        ),
-        *(
-            (
-                f"Contact pressure, {pair.name}",
-                PRESSURE_CAPTION,
-                pressure_figure(run, pair.name, truth),
-            )
-            for pair in case.scene.contacts
-        ),
-        (
-            "Bending moment",
-            MOMENT_CAPTION,
-            moment_figure(run),
-        ),
-    ]
-    figures, places = {}, []
-    for number_, (heading, caption, figure) in enumerate(drawn, start=1):
-        place = f"{anchor}-figure-{number_}"
-        figures[place] = figure
-        models = "rod model" if run.refusal else "rod model and 3D"
-        alt = f"{heading} of {case.title}, {models}; the numbers are in the results beside the page."
-        height = figure.layout.height
-        places.append({"anchor": place, "title": heading, "caption": caption, "alt": alt, "height": height})
-    chart, panels = (None, {}) if run.chart is None else chart_part(run.chart, anchor)
-    figures.update(panels)
-    counts: dict[str, int] = dict.fromkeys(("pass", "fail", "not resolved"), 0)
-    counts.update(Counter(comparison.verdict for comparison in run.comparisons))
-    warnings = [f"The 3D reference cannot treat this case. {run.refusal}"] if run.refusal else []
-    warnings += [
-        f"{solver} did not converge: {answer.quantities.outcome}"
-        for solver, answer in _solvers(run)
-        if not answer.quantities.converged
-    ]
-    content = {
-        "anchor": anchor,
-        "name": case.name,
-        "title": case.title,
-        "description": case.description,
-        "counts": counts,
-        "headline": _headline(run),
-        "failure": "",
-        "warnings": warnings,
-        "sketch": scene_sketch(case.scene, run.rod.quantities),
-        "sketch_caption": _sketch_caption(case.scene.contacts),
-        "level": grades(run.rod.level),
-        "order": grades(run.rod.order),
-        "published": [_row(found) for found in run.comparisons if found.kind == "published"],
-        "figures": places,
-        "picture": picture if picture.data else None,
-        "no_picture": picture.problem,
-        "checks": _check_groups(run.comparisons),
-        "sections": section_table(case.scene.rods),
-        "peers": peers_table(run),
-        "chart": chart,
-        "costs": [_cost_row(solver, answer) for solver, answer in _solvers(run)],
-    }
-    return content, figures
-
-
-def _sketch_caption(contacts: Sequence[ContactPair]) -> str:
-    pairs = []
-    for pair in contacts:
-        second, penalty = opposite(pair.second), f", penalty {pair.penalty:g} N/mm³" if pair.penalty else ""
-        faces = f"{pair.first.face} face of {pair.first.rod} and {second}"
-        pairs.append(f"{pair.name}: {faces} may touch in the marked zone, gap {gap(pair.gap)}{penalty}")
-    return "The scene from the side. " + "; ".join(pairs) + ("." if pairs else "")
-
-
-def _solvers(run: CaseRun) -> list[tuple[str, Run]]:
-    rod = (f"Rod model h{grades(run.rod.level)}, p = {grades(run.rod.order)}", run.rod)
-    meshes = [(f"3D, mesh {index} of {len(run.references)}", answer) for index, answer in enumerate(run.references, 1)]
-    return [rod, *meshes]
-
-
-def _headline(run: CaseRun) -> list[list[str]]:
-    """Cells of the table of all cases: a line for the rod model and, if there is one, one for 3D.
-
-    What the case compares has its uncertainty beside the value of the finest 3D mesh.
-    """
-    answers = (run.rod, *run.references[-1:])
-
-    def largest(answer: Run) -> str:
-        farthest = {
-            found.rod: float(np.linalg.norm(found.displacement, axis=0).max()) for found in answer.quantities.rods
-        }
-        rod = max(farthest, key=lambda name: farthest[name])
-        return number(farthest[rod], 5) + sure(answer, "deflection", rod)
-
-    def sure(answer: Run, quantity: Quantity, of: str) -> str:
-        known = [
-            found.uncertainty
-            for found in run.comparisons
-            if (found.kind, found.quantity, found.of) == ("reference", quantity, of) and found.uncertainty is not None
-        ]
-        return f" ± {100.0 * known[0]:.1g} %" if known and answer.model == "reference" else ""
-
-    return [
-        [
-            ", ".join(
-                number(contact.force, 5) + sure(answer, "contact_force", contact.pair)
-                for contact in answer.quantities.contacts
-            )
-            for answer in answers
-        ],
-        [
-            "; ".join(stretches(np.ravel(contact.edges).tolist()) for contact in answer.quantities.contacts)
-            for answer in answers
-        ],
-        [largest(answer) for answer in answers],
-        [f"{answer.quantities.unknowns:,}".replace(",", " ") for answer in answers],
-        [seconds(answer.total_seconds) for answer in answers],
-    ]
-
-
-def _row(found: Comparison) -> dict[str, str]:
-    certain = found.kind == "published"
-    return {
-        "title": title(found),
-        "definition": DEFINITIONS[found.quantity].text,
-        "value": values_with_unit(found.quantity, found.value),
-        "reference": values_with_unit(found.quantity, found.reference),
-        "difference": measure(found.quantity, found.difference),
-        "uncertainty": "as printed" if certain else measure(found.quantity, found.uncertainty),
-        "tolerance": measure(found.quantity, found.tolerance),
-        "verdict": found.verdict,
-        "reason": found.reason,
-        "source": found.source,
-    }
-
-
-def _check_groups(comparisons: Sequence[Comparison]) -> list[dict[str, Any]]:
-    """Rows under a heading for each model and what it is held against; published values have their own table."""
-    headings = dict.fromkeys(
-        (found.model, found.kind, found.source) for found in comparisons if found.kind != "published"
-    )
-    groups = []
-    for model, kind, source in headings:
-        name = MODEL_NAMES[model][0].upper() + MODEL_NAMES[model][1:]
-        rows = [
-            _row(found) for found in comparisons if (found.model, found.kind, found.source) == (model, kind, source)
-        ]
-        groups.append({"title": f"{name} against {source}", "rows": rows})
-    return groups
-
-
-def _cost_row(solver: str, answer: Run) -> dict[str, str]:
-    quantities = answer.quantities
-    return {
-        "solver": solver,
-        "unknowns": f"{quantities.unknowns:,}".replace(",", " "),
-        "setup": seconds(quantities.setup_seconds),
-        "solve": seconds(quantities.solve_seconds),
-        "total": seconds(answer.total_seconds),
-        "contact_solutions": f"{quantities.contact_solutions} ({quantities.active_sets})",
-        "edges": f"{max((contact.edges_resolution for contact in quantities.contacts), default=0.0):.2g} mm",
-        "memory": f"{answer.peak_memory:.0f} MB",
-        "residual": f"{quantities.equilibrium_residual:.1e}",
-        "penetration": f"{max((contact.penetration for contact in quantities.contacts), default=0.0):.1e} mm",
-        "complementarity": f"{max((each.complementarity_residual for each in quantities.contacts), default=0.0):.1e}",
-        "contact_work": f"{sum(contact.work for contact in quantities.contacts):.1e} N mm",
-        "outcome": quantities.outcome + answer.origin,
-    }
 
 
 def _write_results(run: CaseRun, folder: Path) -> None:

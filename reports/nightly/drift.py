@@ -114,14 +114,14 @@ def _values(tonight: Iterable[Row], before: dict[tuple[str, ...], list[Row]]) ->
             if _moved(anchor, later):
                 anchor = later
         if _moved(anchor, row):
-            what = "difference " if _by_difference(row) else ""
-            limit = _words(row, [_allowed(anchor, row)], 2)
-            text = f"{what}from {_words(anchor, _measured(anchor))} to {_words(row, _measured(row))}, more than {limit}"
+            what = "difference " if by_difference(row) else ""
+            limit = _words(row, [allowed(anchor, row)], 2)
+            text = f"{what}from {_words(anchor, measured(anchor))} to {_words(row, measured(row))}, more than {limit}"
             found.setdefault((row.case, named(row)), Drift(row.case, "value", named(row), text))
     return list(found.values())
 
 
-def _by_difference(row: Row) -> bool:
+def by_difference(row: Row) -> bool:
     """Whether the difference is what may move, not the value.
 
     Of a curve, a row has the two values where they are farthest apart: the place moves for no reason, their distance
@@ -130,37 +130,37 @@ def _by_difference(row: Row) -> bool:
     return row.quantity in CURVES and row.against != BESIDE
 
 
-def _measured(row: Row) -> tuple[float, ...]:
+def measured(row: Row) -> tuple[float, ...]:
     """The numbers of a row that may move."""
-    if _by_difference(row):
+    if by_difference(row):
         return () if row.difference is None else (row.difference,)
     return row.value
 
 
-def _allowed(*rows: Row) -> float:
+def allowed(*rows: Row) -> float:
     """How far the numbers of rows may be apart: the largest uncertainty of any."""
-    return max(max(_uncertainty(row), ROUND_OFF * max(map(abs, _measured(row)), default=0.0)) for row in rows)
+    return max(max(_uncertainty(row), ROUND_OFF * max(map(abs, measured(row)), default=0.0)) for row in rows)
 
 
 def _uncertainty(row: Row) -> float:
-    scale = max(map(abs, row.reference), default=0.0) if row.relative and not _by_difference(row) else 1.0
+    scale = max(map(abs, row.reference), default=0.0) if row.relative and not by_difference(row) else 1.0
     if row.uncertainty:
         return row.uncertainty * scale
     if row.tolerance and scale:
         return SHARE_OF_TOLERANCE * row.tolerance * scale
-    return SHARE_OF_VALUE * max(map(abs, _measured(row)), default=0.0)
+    return SHARE_OF_VALUE * max(map(abs, measured(row)), default=0.0)
 
 
 def _moved(first: Row, second: Row) -> bool:
-    one, other = np.array(_measured(first)), np.array(_measured(second))
+    one, other = np.array(measured(first)), np.array(measured(second))
     if one.shape != other.shape:
         return True
-    return not np.allclose(one, other, rtol=0.0, atol=_allowed(first, second), equal_nan=True)
+    return not np.allclose(one, other, rtol=0.0, atol=allowed(first, second), equal_nan=True)
 
 
 def _words(row: Row, numbers: Sequence[float], digits: int = 6) -> str:
     """Numbers that may move, or by which, with their unit."""
-    if _by_difference(row) and row.relative:
+    if by_difference(row) and row.relative:
         return ", ".join(f"{100.0 * value:.{digits}g}" for value in numbers) + " %" if numbers else NOTHING
     return ", ".join(f"{value:.{digits}g}" for value in numbers) + f" {row.unit}" if numbers else NOTHING
 

@@ -22,7 +22,7 @@ from reports.nightly.drift import LAST_RUNS, Drift, drifts
 from reports.nightly.history import clean, has_run, read_history, write_run
 from reports.nightly.pages import Pages, write_pages
 from reports.nightly.rows import Row, rows_of, this_night
-from reports.nightly.summary import drift_lines, summary
+from reports.nightly.summary import summary
 from reports.nightly.task import Limits, Task, version
 from reports.nightly.unfinished import Unfinished
 from reports.runner import CaseRun, Failure, passed
@@ -100,7 +100,7 @@ def nightly(
         notes=list(dict.fromkeys(notes)),
         seconds=time.perf_counter() - begin,
     )
-    write_report(runs, output, pages.files, drift_lines(moved))
+    write_report(runs, output, pages.files, moved, [*earlier, *rows])
     write_whole(output / "summary.txt", text)
     unfinished.end()
     as_expected = not moved and not pages.missed and all(passed(run) for run in runs)

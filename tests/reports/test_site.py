@@ -1,4 +1,4 @@
-"""The report page: self-contained, complete, and honest about what is missing."""
+"""The report's pages: self-contained, complete, and honest about what is missing."""
 
 from __future__ import annotations
 
@@ -7,21 +7,45 @@ import json
 import re
 import struct
 from dataclasses import replace
+from datetime import UTC, datetime
 from html.parser import HTMLParser
+from itertools import pairwise
 from pathlib import Path
+from typing import Any
+from urllib.parse import unquote
 
 import pytest
+from markupsafe import escape
 
 from reports import site
+from reports.nightly.drift import Drift
+from reports.nightly.rows import rows_of, this_night
 from reports.processes import ProcessFailed
 from reports.runner import CaseRun, Failure
 
 PICTURE = site.DrawnPicture("iVBORw0KGgo=", 1800, 700, "10", "")
 
 
+def case_page(run: CaseRun, **others: Any) -> str:
+    return site.case_pages([run], {run.case.name: PICTURE}, **others)[run.case.name]
+
+
 @pytest.fixture
 def page(case_run: CaseRun) -> str:
-    return site.render([case_run], {case_run.case.name: PICTURE})
+    return case_page(case_run)
+
+
+@pytest.fixture
+def overview(case_run: CaseRun) -> str:
+    return site.overview_page([case_run])
+
+
+@pytest.fixture
+def report(case_run: CaseRun, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A report of two cases, one of which failed, in a folder."""
+    monkeypatch.setattr(site, "pictures", lambda _: {case_run.case.name: PICTURE})
+    failed = Failure(replace(case_run.case, name="other case, (2)", title="Another case"), "the mesh is singular")
+    return site.write_report([case_run, failed], tmp_path / "report").parent
 
 
 class Links(HTMLParser):
@@ -41,30 +65,51 @@ class Links(HTMLParser):
         self.images_without_text += tag == "img" and not given.get("alt")
 
 
-def test_the_page_refers_to_nothing_outside_itself(page: str) -> None:
-    links = Links(page)
+def test_no_page_refers_to_anything_outside_the_report(report: Path) -> None:
+    pages = {path.resolve(): Links(path.read_text(encoding="utf-8")) for path in report.rglob("*.html")}
 
-    assert links.targets
-    assert all(target.startswith(("#", "data:")) for target in links.targets)
-    styles = "".join(re.findall(r"<style>(.*?)</style>", page, re.DOTALL))
-    assert "url(" not in styles
-    assert "@import" not in styles
+    assert {path.name for path in pages} >= {"index.html", "theory.html", "other case, (2).html"}
+    for path, links in pages.items():
+        for target in links.targets:
+            address, _, anchor = target.partition("#")
+            if target.startswith("data:"):
+                continue
+            found = (path.parent / unquote(address)).resolve() if address else path
+            assert found.is_relative_to(report.resolve()), target
+            assert found.is_file(), target
+            assert not anchor or anchor in pages[found].ids, target
+        styles = "".join(re.findall(r"<style>(.*?)</style>", path.read_text(encoding="utf-8"), re.DOTALL))
+        assert "url(" not in styles
+        assert "@import" not in styles
 
 
-def test_the_page_forbids_the_browser_to_fetch_anything(page: str) -> None:
-    policy = re.search(r'http-equiv="Content-Security-Policy" content="([^"]*)"', page)
+def test_pages_forbid_the_browser_to_fetch_anything_but_their_own_script(report: Path) -> None:
+    for path in report.rglob("*.html"):
+        policy = re.search(r'http-equiv="Content-Security-Policy" content="([^"]*)"', path.read_text(encoding="utf-8"))
 
-    assert policy is not None
-    assert policy.group(1).startswith("default-src 'none'")
-    assert "http" not in policy.group(1)
+        assert policy is not None
+        assert policy.group(1).startswith("default-src 'none'; script-src 'self'")
+        assert "http" not in policy.group(1)
 
 
-def test_links_inside_the_page_lead_somewhere_and_ids_are_unique(page: str) -> None:
-    links = Links(page)
+def test_pages_are_light_and_share_one_plotly_script(report: Path) -> None:
+    sizes = {path.name: path.stat().st_size for path in report.rglob("*.html")}
 
-    assert {target[1:] for target in links.targets if target.startswith("#")} <= set(links.ids)
-    assert len(links.ids) == len(set(links.ids))
-    assert links.images_without_text == 0
+    assert max(sizes.values()) < 1_000_000
+    assert (report / "plotly.min.js").stat().st_size > 1_000_000
+
+
+def test_ids_are_unique_images_have_texts_and_headings_are_in_order(report: Path) -> None:
+    for path in report.rglob("*.html"):
+        text = path.read_text(encoding="utf-8")
+        links = Links(text)
+        levels = [int(level) for level in re.findall(r"<h([1-6])[ >]", text)]
+
+        assert len(links.ids) == len(set(links.ids))
+        assert links.images_without_text == 0
+        assert levels[0] == 1
+        assert levels.count(1) == 1
+        assert all(after <= before + 1 for before, after in pairwise(levels))
 
 
 def test_every_comparison_stands_on_the_page(page: str, case_run: CaseRun) -> None:
@@ -94,43 +139,57 @@ def test_axes_of_every_figure_name_their_unit(page: str) -> None:
 
 
 def test_text_of_a_case_file_cannot_become_markup(case_run: CaseRun) -> None:
-    hostile = replace(case_run, case=replace(case_run.case, title="<script>alert(1)</script>"))
+    script = '"><script>alert(1)</script>'
+    hostile = replace(case_run, case=replace(case_run.case, title=script, text=script, description=script))
 
-    page = site.render([hostile], {hostile.case.name: PICTURE})
-
-    assert "<script>alert(1)" not in page
-
-
-def test_a_failed_case_is_on_the_page_with_its_reason(case_run: CaseRun) -> None:
-    failed = Failure(replace(case_run.case, name="other", title="Another case"), "the mesh is singular")
-
-    page = site.render([failed, case_run], {case_run.case.name: PICTURE})
-
-    assert "the mesh is singular" in page
-    assert "not run" in page
-    assert case_run.case.title in page
+    for page in (case_page(hostile), site.overview_page([hostile])):
+        assert "<script>alert(1)" not in page
 
 
-def test_what_moved_since_earlier_runs_stands_at_the_top_where_somebody_looked(case_run: CaseRun, page: str) -> None:
-    drawn = {case_run.case.name: PICTURE}
+def test_a_failed_case_has_a_page_with_its_reason(report: Path) -> None:
+    assert "not run" in (report / "index.html").read_text(encoding="utf-8")
+    assert "the mesh is singular" in (report / "cases" / "other case, (2).html").read_text(encoding="utf-8")
 
-    moved = site.render([case_run], drawn, moved=["bars: force: from <1> to 2 N"])
-    still = site.render([case_run], drawn, moved=[])
 
-    assert "<li>bars: force: from &lt;1&gt; to 2 N</li>" in moved
+def test_what_moved_since_earlier_runs_stands_at_the_top_where_somebody_looked(
+    case_run: CaseRun, overview: str
+) -> None:
+    drift = Drift(case_run.case.name, "value", "force", "from <1> to 2 N")
+
+    moved = site.overview_page([case_run], moved=[drift])
+    still = site.overview_page([case_run], moved=[])
+
+    assert "<li>force: from &lt;1&gt; to 2 N</li>" in moved
     assert moved.index('id="moved"') < moved.index('id="cases"')
     assert "Nothing: verdicts" in still
-    assert 'id="moved"' not in page
+    assert 'id="moved"' not in overview
+
+
+def test_the_history_has_a_chart_for_each_quantity_and_solver(case_run: CaseRun) -> None:
+    nights = [this_night(f"2026110{day}T000000Z-00000000", datetime(2026, 11, day, tzinfo=UTC)) for day in (1, 2, 3)]
+    rows = [row for night in nights for row in rows_of(case_run, night)]
+
+    page = case_page(case_run, rows=rows, moved=[])
+
+    subjects = {(row.solver, row.quantity, row.of, row.point) for row in rows if row.value}
+    assert page.count('<polyline class="line"') >= len(subjects)
+    assert "3 runs since 01 November 2026" in page
+    assert 'id="history"' not in case_page(case_run)
+
+
+def test_the_case_file_stands_on_the_page_as_it_is(case_run: CaseRun, page: str) -> None:
+    assert case_run.case.text
+    assert escape(case_run.case.text) in page
 
 
 def test_a_solver_that_did_not_converge_is_named(case_run: CaseRun) -> None:
     quantities = replace(case_run.rod.quantities, outcome="cycling")
 
-    page = site.render(
-        [replace(case_run, rod=replace(case_run.rod, quantities=quantities))], {case_run.case.name: PICTURE}
-    )
+    run = replace(case_run, rod=replace(case_run.rod, quantities=quantities))
+    page = case_page(run)
 
     assert "did not converge: cycling" in page
+    assert "not converged (1)" in site.overview_page([run])
 
 
 def test_where_nothing_can_be_drawn_the_page_says_so(case_run: CaseRun, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -139,7 +198,7 @@ def test_where_nothing_can_be_drawn_the_page_says_so(case_run: CaseRun, monkeypa
 
     monkeypatch.setattr(site, "in_own_process", no_graphics)
 
-    page = site.render([case_run], site.pictures([case_run]))
+    page = site.case_pages([case_run], site.pictures([case_run]))[case_run.case.name]
 
     assert "There is no picture: drawing failed" in page
 

@@ -43,7 +43,7 @@ def answered(monkeypatch: pytest.MonkeyPatch) -> Answered:
 
         monkeypatch.setattr(nightly_run, "run_tasks", run_tasks)
 
-    monkeypatch.setattr(nightly_run, "write_report", lambda _runs, output, _pages, _moved: output / "index.html")
+    monkeypatch.setattr(nightly_run, "write_report", lambda _runs, output, *_: output / "index.html")
     return set_answer
 
 

@@ -1,0 +1,123 @@
+"""The history of a case on its page: every quantity of every solver over the nightly runs, each as a small chart."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import numpy as np
+from markupsafe import Markup
+
+from reports.formatting import NOTHING, number, seconds
+from reports.nightly.drift import Drift, allowed, by_difference, measured, named
+from reports.nightly.rows import FAILED, RUN, Row
+from reports.solution import Array
+
+# Size of a chart and its margin, in pixels.
+WIDTH, HEIGHT, MARGIN = 220, 40, 5
+# A chart of seconds or memory shows at least this share of the largest, so that noise looks like noise.
+LEAST_SPAN = 0.2
+
+
+def history_part(case: str, rows: Sequence[Row], drifts: Sequence[Drift]) -> dict[str, Any] | None:
+    """What the template `pages/history.html.jinja` needs to know; None where there is no history.
+
+    Parameters
+    ----------
+    rows : of all cases and runs, oldest first, those of this run too
+    drifts : all that moved in this run, of any case
+    """
+    mine = [row for row in rows if row.case == case]
+    if not mine:
+        return None
+    runs = {row.run: row.time for row in mine}
+    moved = {(drift.kind, drift.of): drift.text for drift in drifts if drift.case == case}
+    failed = [
+        f"{row.time:%Y-%m-%d %H:%M}: {row.reason}" for row in mine if row.quantity == RUN and row.verdict == FAILED
+    ]
+    return {
+        "runs": len(runs),
+        "first": f"{min(runs.values()):%d %B %Y}",
+        "groups": [
+            ("Values", _values(mine, moved)),
+            ("Seconds and memory", [*_costs(mine, "seconds", moved), *_costs(mine, "memory", moved)]),
+        ],
+        "moved": [f"{drift.of}: {drift.text}" for drift in drifts if drift.case == case],
+        "failed": failed,
+    }
+
+
+def _values(rows: Sequence[Row], moved: dict[tuple[str, str], str]) -> list[dict[str, Any]]:
+    """A line for each quantity of each solver; one held against several references has one."""
+    series: dict[str, dict[str, Row]] = defaultdict(dict)
+    for row in rows:
+        if row.quantity != RUN and measured(row) and all(np.isfinite(measured(row))):
+            series[named(row)].setdefault(row.run, row)
+    found = []
+    for what, by_run in series.items():
+        each = list(by_run.values())
+        last = each[-1]
+        distance = by_difference(last) and last.relative
+        scale, unit = (100.0, "%") if distance else (1.0, last.unit)
+        # Of several numbers, such as edges, the chart shows the first.
+        line = _line(
+            what + (" (difference)" if by_difference(last) else ""),
+            [(row, scale * measured(row)[0]) for row in each],
+            least=2.0 * scale * allowed(last),
+            told=lambda value, unit=unit: f"{number(value)} {unit}".strip(),
+            moved=moved.get(("value", what), ""),
+        )
+        found.append(line | {"quantity": last.quantity})
+    return found
+
+
+def _costs(rows: Sequence[Row], kind: str, moved: dict[tuple[str, str], str]) -> list[dict[str, Any]]:
+    """A line for each solver's seconds or memory, without runs that took them from the cache."""
+    series: dict[str, dict[str, tuple[Row, float]]] = defaultdict(dict)
+    for row in rows:
+        spent = getattr(row, kind)
+        if spent is not None and not row.kept_since:
+            series[row.solver].setdefault(row.run, (row, spent))
+    told: Callable[[float], str] = seconds if kind == "seconds" else lambda value: f"{value:.0f} MB"
+    found = []
+    for solver, by_run in series.items():
+        each, what = list(by_run.values()), f"{solver} {kind}"
+        least = LEAST_SPAN * max(spent for _, spent in each)
+        found.append(_line(what, each, least, told, moved.get((kind, what), "")) | {"quantity": ""})
+    return found
+
+
+def _line(
+    what: str, series: Sequence[tuple[Row, float]], least: float, told: Callable[[float], str], moved: str
+) -> dict[str, Any]:
+    values = np.array([value for _, value in series])
+    spread = f"{told(values.min())} to {told(values.max())}" if np.ptp(values) > 0.0 else NOTHING
+    return {
+        "what": what,
+        "runs": len(values),
+        "last": told(values[-1]),
+        "spread": spread,
+        "moved": moved,
+        "chart": _chart(what, values, [f"{row.time:%Y-%m-%d %H:%M}: {told(value)}" for row, value in series], least),
+    }
+
+
+def _chart(what: str, values: Array, labels: Sequence[str], least: float) -> Markup:
+    """Values over runs as a line; the height stands for the span of the values, or for `least` where that is larger."""
+    span = max(float(np.ptp(values)), least) or 1.0
+    middle = 0.5 * float(values.min() + values.max())
+    x = np.linspace(MARGIN, WIDTH - MARGIN, len(values)) if len(values) > 1 else np.array([WIDTH / 2])
+    y = HEIGHT / 2 - (values - middle) / span * (HEIGHT - 2 * MARGIN)
+    line = " ".join(f"{right:.1f},{down:.1f}" for right, down in zip(x, y, strict=True))
+    points = Markup("").join(
+        Markup('<circle class="{}" cx="{:.1f}" cy="{:.1f}" r="{}"><title>{}</title></circle>').format(
+            "tonight" if last else "point", right, down, 3.4 if last else 2.2, label
+        )
+        for right, down, label, last in zip(x, y, labels, np.arange(len(x)) == len(x) - 1, strict=True)
+    )
+    text = f"{what} over {len(values)} run{'s' if len(values) > 1 else ''}, last {labels[-1]}"
+    shape = Markup('<svg viewBox="0 0 {w} {h}" width="{w}" height="{h}" role="img" aria-label="{text}">').format(
+        w=WIDTH, h=HEIGHT, text=text
+    )
+    return shape + Markup('<polyline class="line" points="{}"/>').format(line) + points + Markup("</svg>")
