@@ -48,6 +48,8 @@ Level = Annotated[int | None, Parameter(validator=validators.Number(gte=1, lte=1
 NoCache = Annotated[bool, Parameter(name="--no-cache", negative=())]
 NoCharts = Annotated[bool, Parameter(name="--no-charts", negative=())]
 NoPeers = Annotated[bool, Parameter(name="--no-peers", negative=())]
+# A value that may begin with a minus sign.
+Signed = Annotated[str | None, Parameter(allow_leading_hyphen=True)]
 Order = Annotated[int | None, Parameter(validator=validators.Number(gte=2, lte=20))]
 
 
@@ -115,9 +117,9 @@ def new_case(
     poisson_ratio: str | None = None,
     upper_modulus: str | None = None,
     overlap: str | None = None,
-    gap: str | None = None,
+    gap: Signed = None,
     bed_modulus: str | None = None,
-    force: str | None = None,
+    force: Signed = None,
 ) -> int:
     """Make a commented case file to begin from, NAME.toml, and the JSON Schema that editors complete it by.
 

@@ -73,18 +73,18 @@ class Template:
         return self.words[0].upper() + self.words[1:]
 
 
-def _borders(length: float, side: float, clamps: tuple[bool, bool], inner: Sequence[float] = ()) -> list[float]:
-    """Element borders: two short elements at each clamp, whose corners are singular, then even ones between `inner`."""
+def _borders(
+    length: float, side: float, clamps: tuple[bool, bool], inner: Sequence[float] = (), even: int = 4
+) -> list[float]:
+    """Element borders: two short elements at each clamp, whose corners are singular, then even ones between `inner`.
+
+    even : of those about so many
+    """
     start = [0.0, 0.2 * side, side] if clamps[0] else [0.0]
     end = [length - side, length - 0.2 * side, length] if clamps[1] else [length]
     stops = [start[-1], *inner, end[0]]
-    parts = [np.linspace(a, b, _parts(b - a, length) + 1)[1:] for a, b in pairwise(stops)]
+    parts = [np.linspace(a, b, max(1, round(even * (b - a) / length)) + 1)[1:] for a, b in pairwise(stops)]
     return [round(float(border), 4) for border in (*start, *np.concatenate(parts), *end[1:])]
-
-
-def _parts(stretch: float, length: float) -> int:
-    """Elements of a stretch: about four to a rod."""
-    return max(1, round(4.0 * stretch / length))
 
 
 def _single_rod(values: Mapping[str, float]) -> Mapping[str, object]:
@@ -121,7 +121,8 @@ def _bar_on_bed(values: Mapping[str, float]) -> Mapping[str, object]:
     length, side = values["length"], min(values["width"], values["height"])
     middle = 0.5 * length
     return {
-        "borders": _borders(length, side, (True, True), (middle,)),
+        # The bar lifts off inside elements, which long ones follow badly.
+        "borders": _borders(length, side, (True, True), (middle,), even=8),
         "middle": middle,
         "zone_start": side,
         "zone_end": length - side,
