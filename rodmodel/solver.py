@@ -21,7 +21,7 @@ from rodmodel.mesh import RodMesh, lowest
 from rodmodel.shape import extents
 from rodmodel.solution import Cost, Solution
 from rodmodel.soundness import lost_accuracy
-from rodmodel.stretches import Stretch, moved, moving_edges, same_topology, stretches_in_contact
+from rodmodel.stretches import Stretch, moved, moving_edges, same_topology, snapped, stretches_in_contact
 from rodmodel.symmetry import scene_mirrors
 from rodmodel.system import ContactSystem, contact_system
 
@@ -258,6 +258,10 @@ def moved_contact(
             if same_topology(found, wanted):
                 settled = _settled(stretches, edges, search, edge_share)
                 return MovedContact(forces.outcome, solutions, active_sets, settled, system, forces, edges, search)
+        if search is not None and search.outcome == "topology":
+            # At the end of a zone the corner point may stay open where the search has contact reach the end.
+            led = snapped(scene, moved(stretches, edges, search.root))
+            found = led if same_topology(found, led) else found
         stretches = found
         stagnated = search is not None and search.outcome == "stagnated"
         if stagnated and attempt == 0:

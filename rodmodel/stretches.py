@@ -61,8 +61,8 @@ def stretches_in_contact(system: ContactSystem, forces: ContactForces) -> tuple[
             slack = max(station[run[0]] - station[before], station[after] - station[run[-1]])
             start = _end(station[run[0] :: -1], gap[run[0] :: -1])
             end = _end(station[run[-1] :], gap[run[-1] :])
-            stretches.append(Stretch(pair, *_snapped(system.scene, pair, start, end), float(slack)))
-    return tuple(stretches)
+            stretches.append(Stretch(pair, start, end, float(slack)))
+    return snapped(system.scene, stretches)
 
 
 def _end(station: Array, gap: Array) -> float:
@@ -84,11 +84,14 @@ def _end(station: Array, gap: Array) -> float:
     return float(station[0] + share * (station[near] - station[0]))
 
 
-def _snapped(scene: Scene, pair: str, start: float, end: float) -> tuple[float, float]:
-    """Ends next to the zone's end lie on it."""
-    low, high = scene.contact(pair).zone
-    margin = shortest_length(scene, pair)
-    return low if start < low + margin else start, high if end > high - margin else end
+def snapped(scene: Scene, stretches: Sequence[Stretch]) -> tuple[Stretch, ...]:
+    """The stretches with ends that lie next to the ends of their zones, or beyond them, on these."""
+    result = []
+    for each in stretches:
+        (low, high), margin = scene.contact(each.pair).zone, shortest_length(scene, each.pair)
+        start = low if each.start < low + margin else each.start
+        result.append(replace(each, start=start, end=high if each.end > high - margin else each.end))
+    return tuple(result)
 
 
 def shortest_length(scene: Scene, pair: str) -> float:

@@ -14,6 +14,8 @@ from rodmodel.borders import Rates, border_plan, edge_rates, natural_mesh, place
 from rodmodel.contact import ActiveSet
 from rodmodel.edge_pressure import edge_pressures
 from rodmodel.edges import EdgeSearch, find_edges
+from rodmodel.mesh import lowest
+from rodmodel.solver import moved_contact, systems
 from rodmodel.stretches import Stretch, moving_edges
 from rodmodel.symmetry import scene_mirrors
 from rodmodel.system import ContactSystem, contact_system
@@ -91,6 +93,21 @@ def test_the_search_gives_the_system_of_its_last_positions(search) -> None:
     _, found, system_at = search("e20-g0", 238.0, 262.0)
     np.testing.assert_array_equal(found.positions, found.steps[-1])
     np.testing.assert_array_equal(found.system.problem.compliance, system_at(found.positions)[0].problem.compliance)
+
+
+@pytest.mark.parametrize("name", ["e50-g0", "e20-g05"])
+def test_borders_that_sit_on_edges_roughly_leave_forces_and_reported_edges_as_they_are(name) -> None:
+    scene = load_case(f"two-cantilevers-{name}").scene
+    system_on = systems(scene, ElementStore())
+    meshes = {rod.name: natural_mesh(scene, rod, LEVEL, ORDER) for rod in scene.rods}
+    look = system_on(lowest(meshes))
+    precise, rough = (moved_contact(scene, meshes, look, system_on, edge_share=share) for share in (None, 0.05))
+    assert rough.solutions < precise.solutions
+    # forces are stationary at the edges; slopes are exact, so that the last step, not tried any more, ends on them
+    assert rough.forces.force.sum() == pytest.approx(precise.forces.force.sum(), rel=1e-5)
+    ends, rough_ends = ((each.stretches[0].start, each.stretches[0].end) for each in (precise, rough))
+    assert rough_ends == pytest.approx(ends, abs=0.02)
+    assert rough.stretches[0].slack >= np.abs(np.subtract(rough_ends, ends)).max()
 
 
 def test_contact_at_a_corner_ends_with_the_shortest_stretch() -> None:
