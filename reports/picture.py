@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 import pyvista
 
-from cases.scene import Clamp, ContactPair, Polygon, Rod, RodFace, Scene, given_gap
+from cases.scene import Clamp, Polygon, Rod, RodFace, Scene, given_gap
 from reports.geometry import face_extent
 from reports.quantities import Quantities, RodQuantities
 from reports.sections import outline
@@ -24,13 +24,10 @@ from reports.view import (
     extent,
     face_normals,
     held_directions,
-    least_gap,
     load_arrows,
     view_plane,
 )
 
-# The largest displacement is drawn about this long, as a part of the scene's extent.
-DRAWN_DISPLACEMENT = 0.08
 SIZE = (1800, 700)
 INK = "#1f2933"
 HOLD = "#b8c0c8"
@@ -52,20 +49,6 @@ class Picture:
     magnification: float
 
 
-def round_below(value: float) -> float:
-    """The largest of 1, 2 or 5 times a power of ten that is not above a positive value."""
-    power = 10.0 ** np.floor(np.log10(value))
-    return float(power * max(step for step in (1.0, 2.0, 5.0) if step * power <= value * (1.0 + 1e-12)))
-
-
-def magnification(quantities: Quantities) -> float:
-    """A round factor, at least 1, by which displacements are drawn larger."""
-    largest = max(float(np.linalg.norm(rod.displacement, axis=0).max()) for rod in quantities.rods)
-    if largest <= 0.0:
-        return 1.0
-    return max(1.0, round_below(DRAWN_DISPLACEMENT * extent(quantities) / largest))
-
-
 def deformed_surface(rod: Rod, quantities: RodQuantities, factor: float, shift: Array) -> Array:
     """Corners of the outlines of the rod's sections after deformation, global, mm, shape (3, n, corners).
 
@@ -81,36 +64,6 @@ def deformed_surface(rod: Rod, quantities: RodQuantities, factor: float, shift: 
     moved = quantities.position + factor * quantities.displacement + shift[:, None]
     corners: Array = moved[:, :, None] + offset + factor * turned
     return corners
-
-
-def drawn_shifts(scene: Scene, quantities: Quantities, factor: float) -> dict[str, Array]:
-    """How far each rod is moved so that gaps are magnified like displacements, mm.
-
-    The second rod of a pair is moved along the first face's normal from the drawn to the magnified given gap where that
-    is least, with the rods that it is joined to or that already lie at a gap from it; the gap between rods that are
-    joined to each other stays as drawn.
-    """
-    shifts = {rod.name: np.zeros(3) for rod in scene.rods}
-    groups = _joined(scene)
-    for pair in scene.contacts:
-        if not isinstance(pair.second, RodFace) or groups[pair.first.rod] == groups[pair.second.rod]:
-            continue
-        normal, drawn, gap = least_gap(scene, quantities, pair, pair.second)
-        move = shifts[pair.first.rod] + (factor * gap - drawn) * normal - shifts[pair.second.rod]
-        kept, moved = groups[pair.first.rod], groups[pair.second.rod]
-        for name in shifts:
-            if groups[name] == moved:
-                shifts[name], groups[name] = shifts[name] + move, kept
-    return shifts
-
-
-def _joined(scene: Scene) -> dict[str, int]:
-    """Number of the group of joined rods that each rod belongs to."""
-    groups = {rod.name: number for number, rod in enumerate(scene.rods)}
-    for joint in scene.joints:
-        members = {groups[end.rod] for end in joint.ends}
-        groups = {name: min(members) if group in members else group for name, group in groups.items()}
-    return groups
 
 
 def draw(scene: Scene, quantities: Quantities) -> Picture:

@@ -1,4 +1,4 @@
-"""From where a scene is looked at, and where its loads and supports are drawn, for sketch and picture alike."""
+"""From where a scene is looked at, how much larger it is drawn, and where loads and supports are: for all drawings."""
 
 from __future__ import annotations
 
@@ -26,6 +26,8 @@ from reports.solution import Array
 
 # A load's arrow counts with this part of the scene's extent where the view is chosen.
 _ARROW = 0.1
+# The largest displacement is drawn about this long, as a part of the scene's extent.
+DRAWN_DISPLACEMENT = 0.08
 # Arrows of a line load or a pressure, and springs of a bed.
 ARROWS = 7
 SPRINGS = 13
@@ -147,3 +149,47 @@ def least_gap(scene: Scene, quantities: Quantities, pair: ContactPair, opposite:
     gap = drawn if pair.gap == "drawn" else given_gap(pair.gap, station)
     least = int(np.argmin(gap))
     return normal[:, least], float(drawn[least]), float(gap[least])
+
+
+def round_below(value: float) -> float:
+    """The largest of 1, 2 or 5 times a power of ten that is not above a positive value."""
+    power = 10.0 ** np.floor(np.log10(value))
+    return float(power * max(step for step in (1.0, 2.0, 5.0) if step * power <= value * (1.0 + 1e-12)))
+
+
+def magnification(quantities: Quantities) -> float:
+    """A round factor, at least 1, by which displacements are drawn larger."""
+    largest = max(float(np.linalg.norm(rod.displacement, axis=0).max()) for rod in quantities.rods)
+    if largest <= 0.0:
+        return 1.0
+    return max(1.0, round_below(DRAWN_DISPLACEMENT * extent(quantities) / largest))
+
+
+def drawn_shifts(scene: Scene, quantities: Quantities, factor: float) -> dict[str, Array]:
+    """How far each rod is moved so that gaps are magnified like displacements, mm.
+
+    The second rod of a pair is moved along the first face's normal from the drawn to the magnified given gap where that
+    is least, with the rods that it is joined to or that already lie at a gap from it; the gap between rods that are
+    joined to each other stays as drawn.
+    """
+    shifts = {rod.name: np.zeros(3) for rod in scene.rods}
+    groups = _joined(scene)
+    for pair in scene.contacts:
+        if not isinstance(pair.second, RodFace) or groups[pair.first.rod] == groups[pair.second.rod]:
+            continue
+        normal, drawn, gap = least_gap(scene, quantities, pair, pair.second)
+        move = shifts[pair.first.rod] + (factor * gap - drawn) * normal - shifts[pair.second.rod]
+        kept, moved = groups[pair.first.rod], groups[pair.second.rod]
+        for name in shifts:
+            if groups[name] == moved:
+                shifts[name], groups[name] = shifts[name] + move, kept
+    return shifts
+
+
+def _joined(scene: Scene) -> dict[str, int]:
+    """Number of the group of joined rods that each rod belongs to."""
+    groups = {rod.name: number for number, rod in enumerate(scene.rods)}
+    for joint in scene.joints:
+        members = {groups[end.rod] for end in joint.ends}
+        groups = {name: min(members) if group in members else group for name, group in groups.items()}
+    return groups

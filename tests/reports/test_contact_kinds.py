@@ -28,11 +28,10 @@ from cases.scene import (
 )
 from reports.formatting import gap, opposite
 from reports.geometry import contact_limits, stations_of_points
-from reports.picture import drawn_shifts
 from reports.quantities import Quantities, evaluate
 from reports.site import _sketch_caption
 from reports.sketch import scene_sketch
-from reports.view import SPRINGS
+from reports.view import SPRINGS, drawn_shifts
 from rodmodel import solve
 
 STEEL = Material(200_000.0, 0.3, 7.85e-9)

@@ -23,9 +23,10 @@ from cases.scene import (
     Scene,
     Support,
 )
-from reports.picture import deformed_surface, drawn_shifts, magnification, round_below
+from reports.picture import deformed_surface
 from reports.quantities import evaluate
 from reports.runner import CaseRun
+from reports.view import drawn_shifts, magnification, round_below
 from rodmodel import solve
 
 
