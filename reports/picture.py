@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 import pyvista
 
-from cases.scene import Clamp, Polygon, Rod, RodFace, Scene, given_gap
+from cases.scene import Clamp, ContactPair, Polygon, Rod, RodFace, Scene, given_gap
 from reports.geometry import face_extent
 from reports.quantities import Quantities, RodQuantities
 from reports.sections import outline
@@ -21,10 +21,13 @@ from reports.solution import Array
 from reports.view import (
     SPRINGS,
     between,
+    drawn_shifts,
     extent,
     face_normals,
     held_directions,
     load_arrows,
+    magnification,
+    round_below,
     view_plane,
 )
 
