@@ -290,7 +290,10 @@ def compliance(functionals: Functionals) -> Array:
 
 def cross_compliance(first: Functionals, second: Functionals) -> Array:
     """F_1^T K^-1 F_2 of functionals on the same rod, shape (m_1, m_2)."""
-    result = first.nodal.T @ second.nodal
+    # Nodes between a clamp and the first load know nothing of the load.
+    rows = np.flatnonzero(first.nodal.any(axis=1))
+    known = slice(rows[0], rows[-1] + 1) if len(rows) else slice(0)
+    result = first.nodal[known].T @ second.nodal[known]
     for index, members, half in first.bubbles:
         for other_index, other_members, other_half in second.bubbles:
             if index == other_index:

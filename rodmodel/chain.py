@@ -121,19 +121,21 @@ class Chain:
         return chain
 
     def half_solve(self, loads: Array) -> Array:
-        """L^-1 loads with K = L L^T, whose inner products are compliances; on what is carried, shape (size, m)."""
-        result = np.zeros_like(loads)
+        """L^-1 loads with K = L L^T, whose inner products are compliances; on what is carried, shape (size, m).
+
+        It takes the place of the loads: at these sizes a fresh array costs as much as the arithmetic.
+        """
         before: Array | None = None
         for node, factor, link in zip(self.nodes, self.factors, self.links, strict=True):
             load = loads[self.rows[node]]
             if before is not None and link is not None:
-                load = load - link @ before
+                load -= link @ before
             elif not load.any():
                 before = None
                 continue
             before = lower_solve(factor, load)
-            np.divide(before, self.root, out=result[self.rows[node]])
-        return result
+            np.divide(before, self.root, out=load)
+        return loads
 
     def back_solve(self, half: Array) -> Array:
         """L^-T half: displacements of what is carried, shape (size, m)."""
