@@ -5,7 +5,7 @@ import json
 import pytest
 
 from cases.case import QUANTITIES
-from cases.loader import library_names, load_case
+from cases.loader import LIBRARY, TRUTH, library_names, load_case
 from cases.scene import Clamp, ContactPair, Material, Rectangle, RodFace, SectionForce
 
 # E2 (MPa), gap (mm), contact zone (mm) and largest bending stress of the upper rod (MPa) as published.
@@ -97,3 +97,36 @@ def test_every_library_case_loads_under_its_own_name(name):
     assert case.name == case.scene.name == name
     assert case.title
     assert "\n" not in case.title
+
+
+@pytest.mark.parametrize("name", library_names())
+def test_every_library_case_says_what_it_shows_and_why_its_tolerances_are_what_they_are(name):
+    case = load_case(name)
+    text = (LIBRARY / f"{name}.toml").read_text(encoding="utf-8")
+
+    judged = text.partition("[rod_model]")[2]
+
+    assert len(case.description.split()) > 20
+    assert case.compare
+    assert "\n# " in judged  # a comment of its own
+
+
+def test_every_library_case_has_a_title_of_its_own():
+    titles = [load_case(name).title for name in library_names()]
+
+    assert len(set(titles)) == len(titles) >= 30
+
+
+@pytest.mark.parametrize(("name", "load", "axes"), [("out-of-plane", "out_of_plane", "Z"), ("radial", "radial", "XY")])
+def test_the_quarter_rings_are_held_against_the_independent_values(name, load, axes):
+    truth = json.loads((TRUTH / "quarter_ring_r100.json").read_text(encoding="utf-8"))
+    case = load_case(f"quarter-ring-{name}")
+
+    end, (force,) = truth["loads"][load]["end_face_mean_displacement_mm"], case.scene.loads
+
+    assert isinstance(force, SectionForce)
+    assert list(force.force) == truth["loads"][load]["force_N"]
+    assert {found.axis: found.value[0] for found in case.published} == {axis: end["XYZ".index(axis)] for axis in axes}
+    (rod,) = case.scene.rods
+    assert rod.material == Material(truth["E_MPa"], truth["nu"])
+    assert all(found.position == rod.length for found in case.published)
