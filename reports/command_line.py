@@ -10,6 +10,7 @@ from __future__ import annotations
 import json
 import os
 import sys
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal, NoReturn
 
@@ -478,17 +479,17 @@ def report(
     performance = None if cases else _write_performance(output)
     sweeps = None if cases else _stability()
     stability = None if sweeps is None else _write_stability(sweeps, output)
-    pages = [page.name for page in (verification, performance, stability) if page is not None]
+    chosen = None if cases or no_charts else _write_choices(runs, output)
+    made = [page.name for page in (verification, performance, stability) if page is not None]
+    pages = made if chosen is None else [*made, chosen.name]
     print(_written(lambda: write_report(runs, output, pages)))
-    incomplete = any(isinstance(run, Failure) for run in runs) or (not cases and len(pages) < 3)
+    incomplete = any(isinstance(run, Failure) for run in runs) or (not cases and len(made) < 3)
     return NOT_PASSED if incomplete else 0
 
 
 @app.command
 def chart(
-    case: str,
-    /,
-    *,
+    *cases: str,
     output: Path = Path("report"),
     cache: Path | None = None,
     no_cache: NoCache = False,
@@ -496,15 +497,16 @@ def chart(
 ) -> int:
     """Chart error against seconds and unknowns of a case, every method and configuration in the same axes.
 
-    Prints the cheapest configuration of every method that keeps 1 %, 0.1 % and 0.02 %, and writes the chart. What the
-    same code has measured before is taken from the cache, and says so.
+    Prints the cheapest configuration of every method that keeps 1 %, 0.1 % and 0.02 %, and writes the chart. Of several
+    cases, or of the whole library, it prints and writes how well the rod model chose levels for itself in all of them.
+    What the same code has measured before is taken from the cache, and says so.
 
     Parameters
     ----------
-    case
-        name of a case of the library, or path of a case file
+    cases
+        names of cases of the library, or paths of case files; without any, the whole library
     output
-        folder for chart-CASE.html and, in results, its numbers
+        folder for chart-CASE.html, or choices.html of several cases, and, in results, its numbers
     cache
         folder of results; without it, rodcheck in $XDG_CACHE_HOME or ~/.cache
     no_cache
@@ -512,27 +514,35 @@ def chart(
     no_peers
         leave out solvers that are not of this project, CalculiX and NGSolve on their own meshes
     """
-    from cases.loader import load_case
+    from cases.loader import library_names
 
-    loaded = load_case(case)
+    loaded = _load_all(cases or library_names())
     _require_folder(output)
     results = _cache(cache, no_cache)
-    from reports.chart.page import write_chart
-    from reports.chart.wording import print_race
-    from reports.runner import CaseRun
+    from reports.runner import Failure
 
-    (run,) = _charted(_run_all([loaded], results, not no_peers), results)
-    if not isinstance(run, CaseRun):
-        print(f"rodcheck: {loaded.name}: {run.reason}", file=sys.stderr)
-        return NOT_PASSED
-    assert run.chart is not None  # as it was asked for
-    if not run.chart.points:
-        print(f"rodcheck: {loaded.name}: {' '.join(run.chart.notes)}", file=sys.stderr)
-        return NOT_PASSED
-    found = run.chart
-    print_race(found)
-    print(_written(lambda: write_chart(loaded, found, output)))
-    return 0
+    runs = _charted(_run_all(loaded, results, not no_peers), results)
+    failures = [run for run in runs if isinstance(run, Failure)]
+    for failure in failures:
+        print(f"rodcheck: {failure.case.name}: {failure.reason}", file=sys.stderr)
+    # `_charted` gives every other one a chart
+    charts = {run.case.name: run.chart for run in runs if not isinstance(run, Failure) and run.chart is not None}
+    if len(loaded) > 1:
+        from reports.chart.choices_page import print_choices, write_choices
+
+        print_choices(list(charts.values()))
+        print(_written(lambda: write_choices(list(charts.values()), output)))
+        return NOT_PASSED if failures else 0
+    for name, found in charts.items():
+        if not found.points:
+            print(f"rodcheck: {name}: {' '.join(found.notes)}", file=sys.stderr)
+            return NOT_PASSED
+        from reports.chart.page import write_chart
+        from reports.chart.wording import print_race
+
+        print_race(found)
+        print(_written(partial(write_chart, loaded[0], found, output)))
+    return NOT_PASSED if failures else 0
 
 
 @app.command
@@ -883,6 +893,14 @@ def _write_stability(found: Stability, output: Path) -> Path:
     from reports.stability.page import write_stability
 
     return _written(lambda: write_stability(found, output))
+
+
+def _write_choices(runs: Sequence[CaseRun | Failure], output: Path) -> Path:
+    from reports.chart.choices_page import write_choices
+    from reports.runner import CaseRun
+
+    charts = [run.chart for run in runs if isinstance(run, CaseRun) and run.chart is not None]
+    return _written(lambda: write_choices(charts, output))
 
 
 def _load_all(names: Sequence[str]) -> list[Case]:

@@ -36,6 +36,10 @@ PAGES = {
         "Performance",
         "what the rod model costs, against the number of elements, part by part, and by level and order.",
     ),
+    "choices.html": (
+        "Choice of levels",
+        "what the rod model chooses for a tolerance, how sure it is, how near it comes, and what it costs.",
+    ),
     "stability.html": (
         "Stability",
         "every method driven to where it fails, the rod model and plain alternatives side by side.",

@@ -31,6 +31,7 @@ from reports.chart.points import (
     Point,
     Values,
     beam_values,
+    own_estimates,
     own_values,
     peer_values,
     references_of,
@@ -42,7 +43,7 @@ from reports.quantities import evaluate
 from reports.runner import CaseRun, Failure, extrapolation
 from reports.solution import Array
 
-LEVELS = (1, 2, 3, 4, 5, 6, 7, 8)
+LEVELS = (1, 2, 3, 4, 5, 6, 7, 8, 10)
 # Orders on the case's own elements and on those that are short at clamps and ends of zones, where 6 gains nothing.
 ORDERS: Mapping[str, tuple[int, ...]] = {ROD_OWN: (4, 6), ROD_GRADED: (3, 4)}
 MESHES: Mapping[str, str] = {ROD_OWN: "own elements", ROD_GRADED: "graded"}
@@ -52,8 +53,16 @@ MOST_RUNS = 5
 # Processor seconds after which nothing more is begun, s.
 ENOUGH = 10.0
 
-# What a run of a configuration says: outcome, unknowns, values.
-Told = tuple[str, int, Values]
+
+@dataclass(frozen=True)
+class Told:
+    """What a run of a configuration says, as in `Point`."""
+
+    outcome: str
+    unknowns: int
+    values: Values
+    estimates: Values = field(default_factory=dict)
+    chosen: str = ""
 
 
 class NoReference(Exception):
@@ -93,7 +102,18 @@ class Configuration:
     def point(self) -> Point:
         """The point it is."""
         assert self.told is not None  # it was run
-        return Point(self.method, self.label, *self.told[:2], tuple(self.seconds), "processor", self.told[2])
+        told, seconds = self.told, tuple(self.seconds)
+        return Point(
+            self.method,
+            self.label,
+            told.outcome,
+            told.unknowns,
+            seconds,
+            "processor",
+            told.values,
+            told.estimates,
+            told.chosen,
+        )
 
 
 def make_chart(run: CaseRun, progress: Progress = lambda _: None, cache: Cache | None = None) -> Chart:
@@ -217,7 +237,7 @@ def _rod_configurations(case: Case) -> Iterator[Configuration]:
 
         def tell() -> Told:
             quantities = evaluate(solution, points.stations, points.stress_points)
-            return quantities.outcome, quantities.unknowns, own_values(case.scene, quantities)
+            return Told(quantities.outcome, quantities.unknowns, own_values(case.scene, quantities))
 
         return tell
 
@@ -226,7 +246,9 @@ def _rod_configurations(case: Case) -> Iterator[Configuration]:
 
         def tell() -> Told:
             quantities = evaluate(found.solution, points.stations, points.stress_points)
-            return found.outcome, quantities.unknowns, own_values(case.scene, quantities)
+            values = own_values(case.scene, quantities)
+            chosen = ", ".join(f"h{step.level}" for step in found.steps)
+            return Told(found.outcome, quantities.unknowns, values, own_estimates(found.estimates, values), chosen)
 
         return tell
 
@@ -249,7 +271,7 @@ def _beam_configurations(case: Case, notes: list[str]) -> list[Configuration]:
 
     def run(theory: Theory, count: int) -> Callable[[], Told]:
         answer = solve_beams(case.scene, theory, count)
-        return lambda: (answer.outcome, answer.unknowns, beam_values(answer))
+        return lambda: Told(answer.outcome, answer.unknowns, beam_values(answer))
 
     try:
         solve_beams(case.scene, THEORIES[0], BEAM_POINTS[0])
@@ -288,7 +310,7 @@ def _ngsolve_configurations(case: Case, stations: Mapping[str, Array], notes: li
 
         def tell() -> Told:
             found = answer(solved, stations, 0.0)
-            return found.outcome, found.unknowns, peer_values(cast("Answer", found))
+            return Told(found.outcome, found.unknowns, peer_values(cast("Answer", found)))
 
         return tell
 

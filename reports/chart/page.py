@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import json
+import math
 from pathlib import Path
 from typing import Any
 
 import plotly.graph_objects as go
 
 from cases.case import Case
+from reports.chart.choices import HEADINGS, choices, rows
 from reports.chart.figure import chart_figure, key
 from reports.chart.front import COSTS, drawn_points, races
 from reports.chart.points import LENGTHS, TITLES, Chart, Charted
@@ -58,6 +60,8 @@ def chart_part(chart: Chart, anchor: str) -> tuple[dict[str, Any], dict[str, go.
         "ratios": RATIOS,
         "headings": [race_heading(race) for race in found],
         "race": race_rows(found),
+        "choice_headings": HEADINGS[1:],
+        "choices": [("", cells, shortcomings) for _, cells, shortcomings in rows(choices([chart]))],
         "quantities": [TITLES[quantity] for quantity in chart.references],
         "points": [
             (
@@ -126,6 +130,11 @@ def as_json(chart: Chart) -> dict[str, Any]:
             "seconds": list(point.seconds),
             "clock": point.clock,
             "errors": {quantity: chart.error(quantity, point) for quantity in chart.references},
+            "chosen": point.chosen,
+            "estimates": [
+                {"quantity": quantity, "of": of, "errors": [each if math.isfinite(each) else None for each in errors]}
+                for (quantity, of), errors in point.estimates.items()
+            ],
         }
         for point in chart.points
     ]

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 import statistics
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
 from typing import Literal
 
 import numpy as np
@@ -16,6 +16,7 @@ from reports.comparison import Estimate, Extrapolate, edges_estimate, sequence_e
 from reports.geometry import AXES
 from reports.peers import Answer
 from reports.quantities import ContactQuantities, Quantities
+from rodmodel import Estimate as GoalEstimate
 
 Charted = Literal["contact_force", "largest_deflection", "contact_edges", "clamp_moment", "peak_pressure"]
 TITLES: Mapping[Charted, str] = {
@@ -49,6 +50,9 @@ class Point:
     seconds : of each run, in the order they were run
     clock : 'processor' or 'wall'
     values : what it says
+    estimates : how far off it believes itself to be, for those of the values that it says so of, in the same measure as
+        errors: parts of the value, edges in mm
+    chosen : levels that it chose for itself, step by step, in words; '' where it had no choice
     """
 
     method: str
@@ -58,6 +62,8 @@ class Point:
     seconds: tuple[float, ...]
     clock: Literal["processor", "wall"]
     values: Values
+    estimates: Values = field(default_factory=dict)
+    chosen: str = ""
 
     @property
     def median(self) -> float:
@@ -72,13 +78,15 @@ class Reference:
     Attributes
     ----------
     values : by pair, rod or clamp; empty where there is nothing to hold it against
-    uncertainty : in the measure of its errors; None where it is unknown
+    uncertainty : in the measure of its errors, the largest; None where one is unknown
     reason : why there are no values, or what else the reader must know; may be empty
+    uncertainties : by pair, rod or clamp
     """
 
     values: Mapping[str, tuple[float, ...]]
     uncertainty: float | None
     reason: str = ""
+    uncertainties: Mapping[str, float | None] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -100,17 +108,20 @@ class Chart:
 
         None where the point does not tell the quantity, did not converge, or touches over another number of stretches.
         """
-        reference = self.references[quantity]
-        if point.outcome != "converged" or not reference.values:
+        if point.outcome != "converged" or not self.references[quantity].values:
             return None
-        worst = 0.0
-        for of, wanted in reference.values.items():
-            found = point.values.get((quantity, of), ())
-            if len(found) != len(wanted):
-                return None
-            apart = max(abs(one - other) for one, other in zip(found, wanted, strict=True))
-            worst = max(worst, apart if quantity in LENGTHS else apart / abs(wanted[0]))
-        return worst if math.isfinite(worst) else None
+        errors = [self.error_of(quantity, of, point) for of in self.references[quantity].values]
+        known = [error for error in errors if error is not None]
+        return max(known) if len(known) == len(errors) else None
+
+    def error_of(self, quantity: Charted, of: str, point: Point) -> float | None:
+        """The error of one pair, rod or clamp, as `error` has it, whatever the outcome."""
+        wanted, found = self.references[quantity].values[of], point.values.get((quantity, of), ())
+        if len(found) != len(wanted):
+            return None
+        apart = max(abs(one - other) for one, other in zip(found, wanted, strict=True))
+        error = apart if quantity in LENGTHS else apart / abs(wanted[0])
+        return error if math.isfinite(error) else None
 
 
 def own_values(scene: Scene, found: Quantities) -> Values:
@@ -126,6 +137,24 @@ def own_values(scene: Scene, found: Quantities) -> Values:
         if (rod_name, station) in _clamps(scene):
             values["clamp_moment", _clamp_name(rod_name, station)] = (float(np.linalg.norm(reaction[3:])),)
     return values
+
+
+def own_estimates(estimates: Iterable[GoalEstimate], values: Values) -> Values:
+    """The rod model's estimates for what a chart shows; of a rod's clamps, those of the one with the largest moment."""
+    found: dict[tuple[Charted, str], tuple[float, ...]] = {}
+    for each in estimates:
+        name = each.goal.of
+        match each.goal.kind:
+            case "contact force":
+                found["contact_force", name] = (each.relative,)
+            case "deflection":
+                found["largest_deflection", name] = (each.relative,)
+            case "clamp moment":
+                clamps = [key for key in values if key[0] == "clamp_moment" and key[1].rpartition(" at ")[0] == name]
+                found[max(clamps, key=lambda key: values[key])] = (each.relative,)
+            case "contact edge":
+                found["contact_edges", name] = (*found.get(("contact_edges", name), ()), each.error)
+    return found
 
 
 def peer_values(answer: Answer) -> Values:
@@ -180,19 +209,20 @@ def references_of(scene: Scene, meshes: Sequence[Quantities], extrapolate: Extra
             ]
         estimates = {of: _estimate(quantity, of, each, meshes, extrapolate) for of in names}
         largest = max((float(np.abs(one.value).max(initial=0.0)) for one in estimates.values()), default=0.0)
-        values, uncertain = {}, []
+        values: dict[str, tuple[float, ...]] = {}
+        uncertain: dict[str, float | None] = {}
         for of, estimate in estimates.items():
             size = float(np.abs(estimate.value).max(initial=0.0))
             if size == 0.0 or (quantity == "clamp_moment" and size < NO_MOMENT * largest):
                 continue
             values[of] = tuple(estimate.value.tolist())
             scale = 1.0 if quantity in LENGTHS else size
-            uncertain.append(None if estimate.uncertainty is None else estimate.uncertainty / scale)
+            uncertain[of] = None if estimate.uncertainty is None else estimate.uncertainty / scale
         if not values and not reasons:
             reasons = ["it vanishes: there is nothing to hold it against"]
-        known = [part for part in uncertain if part is not None]
+        known = [part for part in uncertain.values() if part is not None]
         uncertainty = max(known) if known and len(known) == len(uncertain) else None
-        found[quantity] = Reference(values, uncertainty, "; ".join(reasons))
+        found[quantity] = Reference(values, uncertainty, "; ".join(reasons), uncertain)
     return found
 
 

@@ -11,6 +11,7 @@ from reports import progress
 from reports.chart import measure
 from reports.chart.points import Chart
 from reports.command_line import BAD_INPUT, NOT_PASSED, run
+from reports.pages.overview import case_file
 from reports.runner import CaseRun, Failure
 
 NAME = "two-cantilevers-e20-g0"
@@ -57,6 +58,21 @@ def test_an_unknown_case_is_bad_input(capsys: pytest.CaptureFixture[str]) -> Non
     assert "no-such-case" in capsys.readouterr().err
 
 
+def test_several_cases_make_the_table_of_choices_and_one_that_failed_is_a_sentence(
+    case_run: CaseRun, chart: Chart, monkeypatch: pytest.MonkeyPatch, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    failure = Failure(replace(case_run.case, name="two-cantilevers-e20-g05"), "It broke.")
+    monkeypatch.setattr(progress, "run_with_progress", lambda *_: [case_run, failure])
+    monkeypatch.setattr(measure, "make_chart", lambda *_, **__: chart)
+
+    code = run(["chart", NAME, "two-cantilevers-e20-g05", "--output", str(tmp_path), "--no-cache"])
+
+    shown = capsys.readouterr()
+    assert code == NOT_PASSED
+    assert shown.out.splitlines()[-1] == str(tmp_path / "choices.html")
+    assert shown.err == "rodcheck: two-cantilevers-e20-g05: It broke.\n"
+
+
 @pytest.mark.usefixtures("solved")
 def test_the_report_has_charts_unless_told_otherwise(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
@@ -68,5 +84,5 @@ def test_the_report_has_charts_unless_told_otherwise(
     for option, there in (([], True), (["--no-charts"], False)):
         run(["report", NAME, "--output", str(tmp_path), "--no-cache", *option])
 
-        assert ("Speed against accuracy" in (tmp_path / "index.html").read_text()) == there
+        assert ("Speed against accuracy" in (tmp_path / case_file(NAME)).read_text()) == there
     capsys.readouterr()

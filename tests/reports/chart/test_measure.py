@@ -9,7 +9,7 @@ import pytest
 
 from reports.cache import Cache
 from reports.chart import measure as measure_module
-from reports.chart.measure import Configuration, Measured, charted, make_chart, measure, run_in_turn
+from reports.chart.measure import Configuration, Measured, Told, charted, make_chart, measure, run_in_turn
 from reports.chart.points import ROD_AUTO, ROD_GRADED, ROD_OWN, SOLID, Point
 from reports.runner import CaseRun, Failure
 
@@ -17,7 +17,7 @@ from reports.runner import CaseRun, Failure
 def configuration(label: str, ran: list[str], seconds: float = 0.0) -> Configuration:
     def run():
         ran.append(label)
-        return lambda: ("converged", 1, {})
+        return lambda: Told("converged", 1, {})
 
     made = Configuration(ROD_OWN, label, run)
     once = made.once
@@ -53,7 +53,7 @@ def test_an_answer_is_evaluated_once_and_its_seconds_are_the_median_of_its_runs(
 
     def tell():
         told.append(1)
-        return "converged", 7, {("contact_force", "pair"): (1.0,)}
+        return Told("converged", 7, {("contact_force", "pair"): (1.0,)})
 
     made = Configuration(SOLID, "mesh", lambda: tell)
     for _ in range(3):

@@ -89,7 +89,7 @@ def test_the_report_has_the_chart_of_a_case_that_has_one(chart: Chart, case_run:
     pictures = {case_run.case.name: site.DrawnPicture("iVBORw0KGgo=", 1800, 700, "10", "")}
     hostile = replace(chart, notes=("<script>alert(1)</script>",))
 
-    with_chart = site.render([replace(case_run, chart=hostile)], pictures)
+    (with_chart,) = site.case_pages([replace(case_run, chart=hostile)], pictures).values()
 
     assert "Speed against accuracy" in with_chart
     assert "<script>alert(1)" not in with_chart
@@ -99,7 +99,7 @@ def test_an_empty_chart_is_a_sentence(chart: Chart, case_run: CaseRun) -> None:
     pictures = {case_run.case.name: site.DrawnPicture("iVBORw0KGgo=", 1800, 700, "10", "")}
     empty = Chart("Case", (), {}, ("There is no chart: it broke",))
 
-    page = site.render([replace(case_run, chart=empty)], pictures)
+    (page,) = site.case_pages([replace(case_run, chart=empty)], pictures).values()
 
     assert "There is no chart: it broke" in page
     assert "configurations in numbers" not in page

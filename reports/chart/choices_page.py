@@ -1,0 +1,77 @@
+"""The choices of all cases as a page of their own, and on a terminal."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from pathlib import Path
+
+from reports.chart.choices import HEADINGS, choices, rows, summary
+from reports.chart.points import Chart
+from reports.html import rendered
+from reports.store import write_whole
+
+PAGE = "choices.html"
+
+
+def write_choices(charts: Sequence[Chart], output: Path) -> Path:
+    """Write `choices.html` into the folder `output`, and its numbers beside it; returns the page's path.
+
+    Raises
+    ------
+    OSError
+        if the folder or a file cannot be written.
+    """
+    found = choices(charts)
+    without = [(chart.title, " ".join(chart.notes)) for chart in charts if not chart.points]
+    content = {"headings": HEADINGS, "rows": rows(found), "summary": summary(found), "without": without}
+    numbers = [
+        {
+            "case": choice.case,
+            "tolerance": choice.tolerance,
+            "outcome": choice.point.outcome,
+            "levels": choice.point.chosen,
+            "seconds": list(choice.point.seconds),
+            "cheapest": None if choice.cheapest is None else choice.cheapest.label,
+            "seconds_of_cheapest": None if choice.cheapest is None else list(choice.cheapest.seconds),
+            "quantities": [
+                {
+                    "quantity": each.quantity,
+                    "of": each.of,
+                    "error": each.error,
+                    "estimate": each.estimate,
+                    "uncertainty": each.uncertainty,
+                }
+                for each in choice.judged
+            ],
+            "shortcomings": choice.shortcomings,
+        }
+        for choice in found
+    ]
+    write_whole(output / "results" / "choices.json", json.dumps(numbers, indent=1, allow_nan=False) + "\n")
+    path = output / PAGE
+    # nothing is drawn: no script is needed
+    write_whole(path, rendered("chart/choices.html.jinja", {}, plotly_file="none", **content))
+    return path
+
+
+def print_choices(charts: Sequence[Chart]) -> None:
+    """Print the table of choices, in what they fall short, and what comes out over all."""
+    from rich.console import Console
+    from rich.markup import escape
+    from rich.table import Table
+
+    from reports.tables import WIDTH
+
+    console = Console(highlight=False)
+    console = console if console.is_terminal else Console(highlight=False, width=WIDTH)
+    found = choices(charts)
+    table = Table(*HEADINGS)
+    for case, cells, _ in rows(found):
+        table.add_row(escape(case), *map(escape, cells))
+    console.print(table)
+    for choice in found:
+        for clause in choice.shortcomings:
+            console.print(escape(f"{choice.case}, {100.0 * choice.tolerance:g} %: {clause}"))
+    for sentence in summary(found):
+        console.print(escape(sentence))
