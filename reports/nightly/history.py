@@ -20,11 +20,9 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from reports.nightly.rows import Row
-from reports.store import in_place_of
+from reports.store import TEMPORARY_NAME, in_place_of
 
 OWN_NAME = re.compile(r"(?P<run>\d{8}T\d{6}Z-[0-9a-f]{8})-(?P<checksum>[0-9a-f]{64})\.parquet")
-# What `in_place_of` writes to before it takes the place of its file.
-TEMPORARY_NAME = re.compile(r"\." + OWN_NAME.pattern + r"\..*\.tmp")
 NUMBERS = pa.list_(pa.float64())
 TYPES = {
     "time": pa.timestamp("us", tz="UTC"),
@@ -117,14 +115,6 @@ def has_run(folder: Path, run: str) -> bool:
     """Whether there is a whole file of that run."""
     names = [path for path in folder.glob(f"{run}-*.parquet") if OWN_NAME.fullmatch(path.name)]
     return any(isinstance(_read(path), pa.Table) for path in names)
-
-
-def clean(folder: Path) -> None:
-    """Remove what a killed run left half written; nobody else may be writing."""
-    if folder.is_dir():
-        for path in list(folder.iterdir()):
-            if TEMPORARY_NAME.fullmatch(path.name):
-                path.unlink(missing_ok=True)
 
 
 def read_history(folder: Path) -> History:

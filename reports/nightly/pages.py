@@ -6,11 +6,6 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from reports.processes import ProcessFailed
-from reports.stability import page as stability
-from reports.stability import registry as sweeps
-from reports.verification import page as verification
-from reports.verification import registry as checks
-from reports.verification.wording import relative
 
 
 @dataclass(frozen=True)
@@ -48,6 +43,11 @@ def write_pages(output: Path) -> Pages:
 
 
 def _write_verification(output: Path) -> tuple[Path, list[str]]:
+    # Here, since they bring all solvers, which a run of a few cases does without.
+    from reports.verification import page as verification
+    from reports.verification import registry as checks
+    from reports.verification.wording import relative
+
     outcomes = checks.verify()
     missed = [
         f"{name}: {found.verdict}: error {relative(found.error)}, tolerance {relative(found.check.tolerance)}"
@@ -58,6 +58,9 @@ def _write_verification(output: Path) -> tuple[Path, list[str]]:
 
 
 def _write_stability(output: Path) -> tuple[Path, list[str]]:
+    from reports.stability import page as stability
+    from reports.stability import registry as sweeps
+
     found = sweeps.carry_out()
     missed = [f"{name}: does not hold" for name, each in found.found.items() if not sweeps.BY_NAME[name].holds(each)]
     return stability.write_stability(found, output), missed

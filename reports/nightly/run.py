@@ -19,7 +19,7 @@ from cases.case import Case
 from cases.loader import library_names
 from reports.nightly.cluster import run_tasks
 from reports.nightly.drift import LAST_RUNS, Drift, drifts
-from reports.nightly.history import clean, has_run, read_history, write_run
+from reports.nightly.history import has_run, read_history, write_run
 from reports.nightly.pages import Pages, write_pages
 from reports.nightly.rows import Row, rows_of, this_night
 from reports.nightly.summary import summary
@@ -27,7 +27,7 @@ from reports.nightly.task import Limits, Task, version
 from reports.nightly.unfinished import Unfinished
 from reports.runner import CaseRun, Failure, passed
 from reports.site import write_report
-from reports.store import write_whole
+from reports.store import remove_left_behind, write_whole
 
 HISTORY = "history"
 # Drift looks back so many runs: more than it needs for a noise, as some took their seconds from the cache.
@@ -71,7 +71,7 @@ def nightly(
         if something cannot be written; the finished cases are kept.
     """
     begin = time.perf_counter()
-    clean(output / HISTORY)
+    remove_left_behind(output)
     unfinished = Unfinished(output / "unfinished", datetime.now(UTC))
     tasks = [Task(case, cache, peers, limits, 1, version()) for case in cases]
     if has_run(output / HISTORY, unfinished.run) and not all(unfinished.find(task) for task in tasks):

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from reports.store import write_whole
+from reports.store import in_place_of, remove_left_behind, write_whole
 
 
 def test_a_file_is_written_with_its_folder(tmp_path: Path) -> None:
@@ -40,3 +40,16 @@ def test_an_interrupt_leaves_the_old_file_and_nothing_else(tmp_path: Path, monke
 
     assert target.read_text() == "old"
     assert list(tmp_path.iterdir()) == [target]
+
+
+def test_what_a_killed_process_left_half_written_is_removed_and_nothing_else(tmp_path: Path) -> None:
+    whole, foreign = tmp_path / "below" / "result.json", tmp_path / "below" / ".mine.tmp"
+    foreign.parent.mkdir()
+    foreign.touch()
+    with in_place_of(whole) as temporary:
+        name = temporary
+    name.write_text("half")
+
+    remove_left_behind(tmp_path)
+
+    assert sorted(whole.parent.iterdir()) == [foreign, whole]

@@ -13,7 +13,7 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
 
-from reports.nightly.history import clean, has_run, read_history, write_run
+from reports.nightly.history import has_run, read_history, write_run
 from reports.nightly.rows import Row
 
 RowMaker = Callable[..., Row]
@@ -117,12 +117,10 @@ def test_a_full_disk_leaves_no_file(tmp_path: Path, row: RowMaker, monkeypatch: 
 
 def test_what_a_killed_run_left_half_written_is_no_part_of_the_history(tmp_path: Path, row: RowMaker) -> None:
     path = write_run(tmp_path, [row()])
-    half = path.with_name(f".{path.name}.abc123.tmp")
+    half = path.with_name(f".{path.name}.abc_1234.tmp")
     half.write_bytes(path.read_bytes()[:100])
 
     assert read_history(tmp_path).notes == ()
-    clean(tmp_path)
-    assert list(tmp_path.iterdir()) == [path]
 
 
 def test_no_folder_is_an_empty_history(tmp_path: Path) -> None:

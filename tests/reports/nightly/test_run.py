@@ -4,9 +4,6 @@ from __future__ import annotations
 
 import errno
 import json
-import subprocess
-import sys
-import time
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -268,32 +265,3 @@ def test_a_second_run_in_the_same_folder_says_so(tmp_path: Path, capsys: pytest.
     shown = capsys.readouterr()
     assert (code, shown.out, shown.err.count("\n")) == (2, "", 1)
     assert "another nightly run is at work" in shown.err
-
-
-@pytest.mark.slow
-def test_a_killed_run_goes_on_where_it_was(tmp_path: Path, tiny_files: tuple[Path, Path]) -> None:
-    output = tmp_path / "output"
-    code = (
-        "import sys, reports.nightly.run as run; from reports.command_line import main\n"
-        "run.write_report = lambda *_: None  # drawing takes longer than all the rest\n"
-        "main()"
-    )
-    command = [sys.executable, "-c", code, "nightly", *map(str, tiny_files)]
-    command += ["--no-peers", "--no-cache", "--output", str(output)]
-    with subprocess.Popen(command) as first:
-        kept: list[Path] = []
-        while not kept and first.poll() is None:
-            time.sleep(0.02)
-            kept = list((output / "unfinished").glob("case-*.json"))
-        first.kill()
-    name = json.loads((output / "unfinished" / "run.json").read_text())["run"]
-
-    resumed = subprocess.run(command, capture_output=True, text=True, check=False)
-
-    assert kept
-    assert (resumed.returncode, resumed.stderr) == (0, "")
-    history = read_history(output / "history")
-    assert history.notes == ()
-    assert history.cases() == ["double", "tiny"]
-    assert {row.run for row in history.rows("tiny")} == {name}
-    assert sorted(path.name for path in output.iterdir()) == ["history", "lock", "summary.txt"]
