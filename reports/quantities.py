@@ -20,6 +20,9 @@ from reports.geometry import contact_limits, pair_axis
 from reports.sections import section_modulus
 from reports.solution import Array, ContactProfile, Solution
 
+# Moments of two clamps that differ by less than this part of them are alike.
+ALIKE = 1e-3
+
 
 class SolutionError(Exception):
     """A solution that has no quantities; the message says why, in one sentence."""
@@ -101,7 +104,8 @@ DEFINITIONS: Mapping[str, Definition] = {
     "end_moment_equilibrium": Definition(
         "Clamp moment, equilibrium",
         "N mm",
-        "M1 in the clamped section from equilibrium; where both ends are clamped, the larger of the two.",
+        "M1 in the clamped section from equilibrium; where both ends are clamped, the larger of the two, and the "
+        "start's if they are alike.",
     ),
     "end_moment_stress": Definition(
         "Clamp moment, stress",
@@ -409,7 +413,9 @@ def rod_quantities(solution: Solution, rod: Rod, applied: AppliedForces, station
     ]
     end_moment_equilibrium = end_moment_stress = max_bending_stress = None
     if clamped:
-        end = max(clamped, key=lambda index: abs(float(equilibrium[3, index])))
+        # of two that are alike always the start's, as their signs may differ
+        alike = (1.0 - ALIKE) * max(abs(float(equilibrium[3, index])) for index in clamped)
+        end = max(index for index in clamped if abs(float(equilibrium[3, index])) >= alike)
         end_moment_equilibrium, end_moment_stress = float(equilibrium[3, end]), float(stress[3, end])
         max_bending_stress = abs(end_moment_stress) / section_modulus(rod.section)
     position, axes = solution.frame(rod.name, station)

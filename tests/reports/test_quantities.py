@@ -8,11 +8,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from cases.scene import Clamp, Line, Material, Rectangle, Rod, Scene, SectionForce
+from cases.scene import Clamp, End, Line, Material, Rectangle, Rod, Scene, SectionForce
 from reports.applied_forces import applied_forces, reactions
 from reports.equilibrium import equilibrium_residual, equilibrium_resultants
 from reports.quantities import DEFINITIONS, default_stations, evaluate, stress_residual, stress_s
 from reports.solution import Array, Solution
+from rodmodel import solve
 
 ROUND_OFF = 1e-9
 
@@ -213,3 +214,15 @@ def test_every_quantity_has_a_unit_and_a_definition_in_words() -> None:
     for name, definition in DEFINITIONS.items():
         assert definition.text.endswith("."), name
         assert (definition.unit == "") == (name in dimensionless), name
+
+
+@pytest.mark.parametrize("ends", [("start", "end"), ("end", "start")])
+def test_of_two_clamp_moments_that_differ_in_sign_alone_it_is_the_starts(ends: tuple[End, End]) -> None:
+    line = Line((0.0, 0.0, 0.0), (100.0, 0.0, 0.0), (0.0, 1.0, 0.0))
+    rod = Rod("beam", line, Rectangle(10.0, 10.0), Material(200_000.0, 0.3), (0.0, 50.0, 100.0))
+    clamps = tuple(Clamp("beam", end, (0.0, 0.5, 0.0) if end == "end" else (0.0, 0.0, 0.0)) for end in ends)
+
+    beam = evaluate(solve(Scene("settled", (rod,), clamps, (), ()), 2, 3)).rod("beam")
+
+    assert beam.moment[0] == pytest.approx(-beam.moment[-1], rel=1e-6)
+    assert beam.end_moment_equilibrium == beam.moment[0]
