@@ -57,14 +57,14 @@ def watched() -> Iterator[list[str]]:
         raise TimeoutError
 
     done.clear()
-    signal.signal(signal.SIGALRM, hang)
-    signal.alarm(60)
+    signal.signal(signal.SIGPROF, hang)
+    signal.setitimer(signal.ITIMER_PROF, 4.0 * LONGEST)
     watching = True
     try:
         yield done
     finally:
         watching = False
-        signal.alarm(0)
+        signal.setitimer(signal.ITIMER_PROF, 0.0)
 
 
 @pytest.fixture(scope="module")

@@ -171,12 +171,8 @@ def _supports(scene: Scene) -> Iterator[tuple[str, ...]]:
                 yield "clamp", support.rod, f"{at:.6g}", ", ".join(["the whole section", *moved])
             case Support():
                 held = ", ".join(support.components)
-                to = (
-                    f", set to {', '.join(f'{each:g}' for each in support.displacement)}"
-                    if support.displacement
-                    else ""
-                )
-                yield support.of, support.rod, f"{support.position:.6g}", held + to
+                given = f", set to {_vector(support.displacement)}" if support.displacement else ""
+                yield support.of, support.rod, f"{support.position:.6g}", held + given
     for joint in scene.joints:
         yield "joint", ", ".join(f"{end.rod} ({end.end})" for end in joint.ends), "", "rigidly joined"
     for bed in scene.beds:
