@@ -112,6 +112,14 @@ class SolidRod:
         return found
 
 
+def _located(found: SolidRod, points: Array) -> tuple[IntArray, Array, Array]:
+    """`located` for points (x, y, s), shape (3, n), many of which may lie at the same place of their sections."""
+    places, which = np.unique(points[:2].T, axis=0, return_inverse=True)
+    element, local, share = located(found.body.section, places)
+    which = which.ravel()
+    return element[which], local[which], share[which]
+
+
 @dataclass(frozen=True, eq=False)
 class SolidPair:
     """What is kept of one contact pair: distance of the faces, mm, and force, N, at its nodes, shape (n,) each."""
@@ -164,13 +172,25 @@ class SolidSolution:
         local = np.einsum("n,pknc->pkc", found.centre, found.nodal[planes])
         return np.asarray(np.einsum("pk,pkb,pkbc->ck", shape_functions(zeta), local, found.body.axes[planes]))
 
+    def displacement_at(self, rod: str, points: Array) -> Array:
+        """Displacement at points (x, y, s) of a rod, global components, mm; shape (3, n) to (3, n)."""
+        found = self.rods[rod]
+        element, local, share = _located(found, points)
+        holding = np.arange(len(share)), np.argmax(share, axis=1)
+        nodes, (xi, eta) = found.body.section.quads[element[holding]], local[holding].T
+        layer, zeta = locate(found.body.borders, points[2])
+        planes = 2 * layer[:, None] + np.arange(3)
+        values = functions(xi, eta, zeta)[0].reshape(-1, 3, 9)
+        nodal = found.nodal[planes[:, :, None], nodes[:, None]]
+        return np.asarray(np.einsum("npa,npab,npbc->cn", values, nodal, found.body.axes[planes]))
+
     def stress(self, rod: str, points: Array) -> Array:
         """Stress in the local frame at (x, y, s): xx, yy, ss, ys, xs, xy, MPa, shape (6, n).
 
         points : mm, shape (3, n); where elements meet, the stress is their mean
         """
         found, points = self.rods[rod], np.asarray(points, dtype=np.float64)
-        element, local, share = located(found.body.section, points[:2].T)
+        element, local, share = _located(found, points)
         candidates = element.shape[1]
         holding = np.flatnonzero(share.ravel() > 0.0)
         quads, inside = element.ravel()[holding], local.reshape(-1, 2)[holding]
@@ -247,7 +267,8 @@ class SolidSolution:
     def contact_points(self, pair: str) -> ContactPoints:
         """State of every node of the first face that has a point of the second opposite."""
         found = self.pairs[pair]
-        return ContactPoints(found.contact.position.T, found.contact.normal.T, found.gap, found.force)
+        contact, pressure = found.contact, found.force / found.contact.area
+        return ContactPoints(contact.position.T, contact.normal.T, found.gap, found.force, pressure)
 
     def contact_profile(self, pair: str) -> ContactProfile:
         """Nodal pressure along the zone; none where the faces do not lie opposite."""

@@ -35,13 +35,14 @@ class Cost:
 class ContactPoints:
     """Nodes of the first face of a pair (`reports.solution.ContactPoints`).
 
-    position, normal : global, mm, shape (3, n); gap : d, mm, shape (n,); force : N, shape (n,)
+    position, normal : global, mm, shape (3, n); gap : d, mm, force : N, pressure : MPa, shape (n,) each
     """
 
     position: Array
     normal: Array
     gap: Array
     force: Array
+    pressure: Array
 
 
 @dataclass(frozen=True)
@@ -119,7 +120,10 @@ class Solution:
     def displacement(self, rod: str, station: Array) -> Array:
         """Displacement of the centre line at arc lengths `station`, global, mm, shape (3, n)."""
         station = np.asarray(station, dtype=np.float64)
-        points = np.stack([np.zeros_like(station), np.zeros_like(station), station])
+        return self.displacement_at(rod, np.stack([np.zeros_like(station), np.zeros_like(station), station]))
+
+    def displacement_at(self, rod: str, points: Array) -> Array:
+        """Displacement at points (x, y, s) of a rod, global components, mm; shape (3, n) to (3, n)."""
         axes = rod_frame(self.rods[rod].rod).axes
         return np.asarray(axes.T @ displacement(self.rods[rod].field, points))
 
@@ -160,6 +164,7 @@ class Solution:
             normal=np.repeat(normal[:, None], len(s), axis=1),
             gap=result.gap.ravel(),
             force=(result.area * result.pressure).ravel(),
+            pressure=result.pressure.ravel(),
         )
 
     def contact_profile(self, pair: str) -> ContactProfile:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import statistics
 import time
+from collections import deque
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
@@ -26,6 +27,7 @@ from reports.peers import PeerRun, SideBySide, ask_peers, side_by_side, stations
 from reports.processes import ProcessFailed, Progress, failure_reason, in_own_process
 from reports.quantities import ContactQuantities, PressureProfile, Quantities, RodQuantities, evaluate
 from reports.solution import Model, Solution
+from reports.surface import PressedFace, RodSurface, Surface, SurfaceSolution, surface
 
 # The rod model answers in milliseconds; its seconds are the median of this many runs.
 ROD_REPEATS = 5
@@ -44,6 +46,7 @@ class Run:
     peak_memory : largest resident memory of the process so far, MB
     kept_since : the day it was computed on, YYYY-MM-DD, if it comes from the cache, with the seconds and the memory of
         then; else ''
+    surface : to be drawn; None where nobody asked for it
     """
 
     model: Model
@@ -53,6 +56,7 @@ class Run:
     total_seconds: float
     peak_memory: float
     kept_since: str = ""
+    surface: Surface | None = None
 
     @property
     def origin(self) -> str:
@@ -69,7 +73,17 @@ class ReferenceRuns:
 
 
 # What results on disk are made of.
-KINDS = (Run, ReferenceRuns, Quantities, ContactQuantities, PressureProfile, RodQuantities)
+KINDS = (
+    Run,
+    ReferenceRuns,
+    Quantities,
+    ContactQuantities,
+    PressureProfile,
+    RodQuantities,
+    Surface,
+    RodSurface,
+    PressedFace,
+)
 
 
 @dataclass(frozen=True)
@@ -112,7 +126,7 @@ def run_rod(
     level: int | None = None,
     order: int | None = None,
     repeats: int = 1,
-    solved: Callable[[Solution], None] = lambda _: None,
+    solved: Callable[[SurfaceSolution], None] = lambda _: None,
 ) -> Run:
     """Solve a case with the rod model; level and order are the case's where they are not given.
 
@@ -186,7 +200,9 @@ def run_case(case: Case, progress: Progress, cache: Cache | None = None) -> Case
     rod = _kept_rod(case, cache)
     if rod is None:
         progress("rod model")
-        rod = run_rod(case, repeats=ROD_REPEATS)
+        solved = deque[SurfaceSolution](maxlen=1)
+        rod = run_rod(case, repeats=ROD_REPEATS, solved=solved.append)
+        rod = replace(rod, surface=surface(solved[-1]))
         if cache is not None:
             cache.keep("rod", _rod_question(case), rod)
 
@@ -235,18 +251,24 @@ def _run_references(case: Case, progress: Progress) -> ReferenceRuns:
         quantities = evaluate(solution, points.stations, points.stress_points)
         total = solution.cost.setup_seconds + solution.cost.solve_seconds + time.perf_counter() - begin
         runs.append(Run("reference", None, None, quantities, total, peak_memory()))
+        finest = solution
+    runs[-1] = replace(runs[-1], surface=surface(finest))
     return ReferenceRuns(tuple(runs), tuple(solution.representative_size for solution in solutions))
 
 
 def _rod_question(case: Case) -> tuple[object, ...]:
     """All that the rod model's answer to a case depends on."""
-    code = code_version("rodmodel", "reports.quantities"), getsource(Run), getsource(run_rod)
+    code = code_version("rodmodel", "reports.quantities", "reports.surface"), getsource(Run), getsource(run_rod)
     return code, case.scene, case.rod_model, evaluation_points(case), ROD_REPEATS
 
 
 def _reference_question(case: Case) -> tuple[object, ...]:
     """All that the 3D reference's answer to a case depends on; the meshes are a matter of its code."""
-    code = code_version("reference3d", "reports.quantities"), getsource(Run), getsource(_run_references)
+    code = (
+        code_version("reference3d", "reports.quantities", "reports.surface"),
+        getsource(Run),
+        getsource(_run_references),
+    )
     return code, case.scene, evaluation_points(case)
 
 

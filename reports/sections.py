@@ -28,6 +28,20 @@ def outline(section: Section) -> Array:
             return corners if _second_moment(corners) > 0.0 else corners[::-1]
 
 
+def outlines(section: Section) -> list[Array]:
+    """Corners of all borders as in `outline`: the outer one, then those of holes."""
+    match section:
+        case Box():
+            half = np.array([section.width, section.height]) / 2.0 - section.wall
+            return [outline(section), np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)]) * half]
+        case Ring():
+            return [outline(section), _circle(section.inner_diameter)]
+        case Polygon():
+            return [outline(section), *(np.array(hole) - section.centroid for hole in section.holes)]
+        case _:
+            return [outline(section)]
+
+
 def _circle(diameter: float) -> Array:
     angle = np.linspace(0.0, 2.0 * math.pi, AROUND, endpoint=False)
     return diameter / 2.0 * np.column_stack([np.cos(angle), np.sin(angle)])

@@ -65,12 +65,14 @@ class ContactPoints:
     normal : outward normal of the first face, shape (3, n)
     gap : d, mm, shape (n,)
     force : compressive, N, shape (n,)
+    pressure : force over the point's share of the face, MPa, shape (n,)
     """
 
     position: Array
     normal: Array
     gap: Array
     force: Array
+    pressure: Array
 
 
 @dataclass(frozen=True, eq=False)
@@ -234,7 +236,9 @@ class Solution:
         problem = self.system.problem
         gap = problem.gap[points] + problem.compliance[points] @ self.force + problem.motion[points] @ self.free_motion
         station, across = grid.flat()
-        shared = grid.weight.ravel() > NO_SHARE * grid.weight.max()
+        share = grid.weight.ravel()
+        shared = share > NO_SHARE * share.max()
+        pressure = np.divide(force, share, out=np.zeros_like(force), where=shared)
         if grid.symmetric:
             beyond = across > grid.across.min(axis=2, keepdims=True).repeat(grid.across.shape[2], axis=2).ravel()
             station, across = (
@@ -243,12 +247,12 @@ class Solution:
             )
             force = np.where(beyond, 0.5 * force, force)
             force, gap = np.concatenate([force, force[beyond]]), np.concatenate([gap, gap[beyond]])
-            shared = np.concatenate([shared, shared[beyond]])
+            shared, pressure = np.concatenate([shared, shared[beyond]]), np.concatenate([pressure, pressure[beyond]])
         # At the corners of what the faces share, points may have no share of it.
-        station, across, force, gap = station[shared], across[shared], force[shared], gap[shared]
+        station, across, force, gap, pressure = (each[shared] for each in (station, across, force, gap, pressure))
         facing = facing_points(self.scene, contact, station, across)
         position = global_points(self.scene.rod(contact.first.rod), facing.first)
-        return ContactPoints(position, facing.normal, gap, force)
+        return ContactPoints(position, facing.normal, gap, force, pressure)
 
     def contact_profile(self, pair: str) -> ContactProfile:
         """Pressure along the zone of the pair."""

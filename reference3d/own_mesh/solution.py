@@ -152,7 +152,8 @@ class OwnMeshSolution:
     def contact_points(self, pair: str) -> ContactPoints:
         """State of every corner of the first face's facets that takes part."""
         found = self.pairs[pair]
-        return ContactPoints(found.contact.position.T, found.contact.normal.T, found.gap, found.force)
+        contact, pressure = found.contact, found.force / found.contact.area
+        return ContactPoints(contact.position.T, contact.normal.T, found.gap, found.force, pressure)
 
     def contact_profile(self, pair: str) -> ContactProfile:
         """Pressure along the zone, at stations as far apart as facets are long in the mean."""

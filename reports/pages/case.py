@@ -15,6 +15,7 @@ from reports.comparison import Comparison
 from reports.figures import deflection_figure, moment_figure, pressure_figure
 from reports.formatting import MODEL_NAMES, gap, grades, measure, opposite, seconds, title, values_with_unit
 from reports.html import PLOTLY_FILE, rendered
+from reports.pages.turning import turning_part
 from reports.peers_table import peers_table
 from reports.runner import ROD_REPEATS, CaseRun, Failure, Run
 from reports.section_table import section_table
@@ -129,7 +130,7 @@ def _answered(run: CaseRun, picture: DrawnPicture) -> tuple[dict[str, Any], dict
         "figures": places,
         "picture": picture if picture.data else None,
         "no_picture": picture.problem,
-        "turning": None,
+        "turning": turning_part(run),
         "checks": _check_groups(run.comparisons),
         "sections": section_table(case.scene.rods),
         "peers": peers_table(run),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Callable, Sequence
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -14,6 +15,8 @@ from reports.nightly.drift import Drift, allowed, by_difference, measured, named
 from reports.nightly.rows import FAILED, RUN, Row
 from reports.solution import Array
 
+# What moved: kind and words of a drift, and its text.
+Moved = dict[tuple[str, str], str]
 # Size of a chart and its margin, in pixels.
 WIDTH, HEIGHT, MARGIN = 220, 40, 5
 # A chart of seconds or memory shows at least this share of the largest, so that noise looks like noise.
@@ -32,7 +35,7 @@ def history_part(case: str, rows: Sequence[Row], drifts: Sequence[Drift]) -> dic
     if not mine:
         return None
     runs = {row.run: row.time for row in mine}
-    moved = {(drift.kind, drift.of): drift.text for drift in drifts if drift.case == case}
+    moved: Moved = {(drift.kind, drift.of): drift.text for drift in drifts if drift.case == case}
     failed = [
         f"{row.time:%Y-%m-%d %H:%M}: {row.reason}" for row in mine if row.quantity == RUN and row.verdict == FAILED
     ]
@@ -48,7 +51,7 @@ def history_part(case: str, rows: Sequence[Row], drifts: Sequence[Drift]) -> dic
     }
 
 
-def _values(rows: Sequence[Row], moved: dict[tuple[str, str], str]) -> list[dict[str, Any]]:
+def _values(rows: Sequence[Row], moved: Moved) -> list[dict[str, Any]]:
     """A line for each quantity of each solver; one held against several references has one."""
     series: dict[str, dict[str, Row]] = defaultdict(dict)
     for row in rows:
@@ -59,20 +62,24 @@ def _values(rows: Sequence[Row], moved: dict[tuple[str, str], str]) -> list[dict
         each = list(by_run.values())
         last = each[-1]
         distance = by_difference(last) and last.relative
-        scale, unit = (100.0, "%") if distance else (1.0, last.unit)
+        scale = 100.0 if distance else 1.0
         # Of several numbers, such as edges, the chart shows the first.
         line = _line(
             what + (" (difference)" if by_difference(last) else ""),
             [(row, scale * measured(row)[0]) for row in each],
             least=2.0 * scale * allowed(last),
-            told=lambda value, unit=unit: f"{number(value)} {unit}".strip(),
+            told=partial(_with_unit, "%" if distance else last.unit),
             moved=moved.get(("value", what), ""),
         )
         found.append(line | {"quantity": last.quantity})
     return found
 
 
-def _costs(rows: Sequence[Row], kind: str, moved: dict[tuple[str, str], str]) -> list[dict[str, Any]]:
+def _with_unit(unit: str, value: float) -> str:
+    return f"{number(value)} {unit}".strip()
+
+
+def _costs(rows: Sequence[Row], kind: str, moved: Moved) -> list[dict[str, Any]]:
     """A line for each solver's seconds or memory, without runs that took them from the cache."""
     series: dict[str, dict[str, tuple[Row, float]]] = defaultdict(dict)
     for row in rows:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -28,6 +28,7 @@ from reports.processes import ProcessFailed, Progress, in_own_process
 from reports.quantities import Quantities, evaluate
 from reports.runner import CaseRun, Run
 from reports.solution import Array, Model
+from reports.surface import PressedFace, RodSurface, Surface, skin
 
 LENGTH = 300.0
 SIDE = 15.0
@@ -243,3 +244,29 @@ def case_run() -> CaseRun:
         case, rod.quantities, [reference.quantities for reference in references], _second_order
     )
     return CaseRun(case, rod, references, comparisons)
+
+
+@pytest.fixture(scope="session")
+def drawn_run(case_run: CaseRun) -> CaseRun:
+    """The same with surfaces to be drawn: plane sections, sigma_s = M1 y / I, and the pressure of the profile."""
+
+    def drawn(run: Run) -> Run:
+        rods = []
+        for rod in case_run.case.scene.rods:
+            found, (_, y, s) = run.quantities.rod(rod.name), skin(rod).places
+            moved = np.array([np.interp(s, found.station, each) for each in found.displacement])
+            rods.append(RodSurface(moved, np.interp(s, found.station, found.moment) * y / INERTIA))
+        pressure = run.quantities.contacts[0].pressure
+        x = np.tile(pressure.position, 2)
+        z = np.repeat([-SIDE / 2, SIDE / 2], len(pressure.position))
+        position = np.vstack([x, np.full_like(x, SIDE / 2), z])
+        first = np.arange(len(pressure.position) - 1)
+        second = first + len(pressure.position)
+        triangles = np.vstack(
+            [np.column_stack([first, first + 1, second]), np.column_stack([first + 1, second + 1, second])]
+        )
+        face = PressedFace("overlap", position, np.zeros_like(position), np.tile(pressure.middle, 2), triangles)
+        return replace(run, surface=Surface(tuple(rods), (face,)))
+
+    *coarse, finest = case_run.references
+    return replace(case_run, rod=drawn(case_run.rod), references=(*coarse, drawn(finest)))
