@@ -141,7 +141,7 @@ def print_choice(found: AdaptiveSolution) -> None:
         table.add_row(each.goal.kind, each.goal.of, value, f"{each.error:.2g} {each.goal.unit}", relative)
     if found.estimates:
         out.print(table)
-    out.print(f"Levels along the rods (tolerance {100.0 * found.tolerance:g} %)")
+    out.print(f"Levels along the rods (tolerance {100.0 * found.tolerance:g} %; X: level 10)")
     width = max(len(name) for name in found.steps[-1].meshes)
     for name, elements in chosen_elements(found).items():
         out.print(f"{name:<{width}}  {strip(elements)}", markup=False)
@@ -152,7 +152,12 @@ def print_choice(found: AdaptiveSolution) -> None:
 
 
 def strip(elements: tuple[ChosenElement, ...]) -> str:
-    """Levels along a rod, to scale where elements are long enough, between bars where they end: |8|6|4444|22222|."""
+    """Levels along a rod, to scale where elements are long enough, between bars where they end: |X|6|4444|22222|."""
     length = elements[-1].end - elements[0].start
-    cells = [str(each.level) * max(1, round(WIDTH * (each.end - each.start) / length)) for each in elements]
+    cells = [sign(each.level) * max(1, round(WIDTH * (each.end - each.start) / length)) for each in elements]
     return f"|{'|'.join(cells)}|"
+
+
+def sign(level: int) -> str:
+    """A level as one character."""
+    return "X" if level == 10 else str(level)

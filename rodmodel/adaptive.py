@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
@@ -161,7 +161,7 @@ def solve_to(scene: Scene, tolerance: float) -> AdaptiveSolution:
         else:
             contact = moved_contact(scene, meshes, stretches, system_on, edge_share=EDGE_SHARE * tolerance**0.5)
         solution = solution_of(scene, contact, begin, begin)
-        stretches = solution.stretches
+        stretches = snapped(scene, solution.stretches)
         meshes = {name: _mesh_of(solution, name) for name in meshes}
         seen = look_at(solution)
         unknowns, found = solution.cost.unknowns, goals(solution)
@@ -271,10 +271,10 @@ def levels_for(seen: Look, error: float, tolerance: float) -> tuple[tuple[int, i
     def lowest(levels: range, error: Callable[[int], float], limit: float) -> int:
         return next((level for level in levels if error(level) <= limit), levels[-1])
 
-    # Where nothing tells yet how fast errors fall away from corners, the next level will.
+    # Where nothing tells yet how fast errors fall away from corners and under contact, the next level will.
     highest = min(PROBED + LEVEL_STEP if seen.level <= PROBED else HIGHEST_LEVEL, HIGHEST_LEVEL)
     elsewhere = lowest(range(seen.level, highest + 1, LEVEL_STEP), away, AWAY * tolerance)
-    highest = highest if away(elsewhere) > 0.5 * tolerance else HIGHEST_LEVEL
+    highest = highest if away(elsewhere) + seen.indentation(highest) > 0.5 * tolerance else HIGHEST_LEVEL
     near = lowest(
         range(seen.level, highest + 1, LEVEL_STEP), partial(error_at, elsewhere=elsewhere), ENOUGH * tolerance
     )
@@ -288,6 +288,22 @@ def _is_more(raised: Mapping[str, RodMesh], meshes: Mapping[str, RodMesh]) -> bo
         or (raised[name].orders > mesh.orders).any()
         for name, mesh in meshes.items()
     )
+
+
+def snapped(scene: Scene, stretches: Sequence[Stretch]) -> tuple[Stretch, ...]:
+    """The stretches, ends next to those of their zone set to these: low levels leave points in corners open.
+
+    Where that is wrong, the search for the edges says so, as contact then pulls there.
+    """
+    result = []
+    for each in stretches:
+        (first, last), near = scene.contact(each.pair).zone, 0.5 * each.slack
+        start, end = (
+            (first if each.start - first < near else each.start),
+            (last if last - each.end < near else each.end),
+        )
+        result.append(replace(each, start=start, end=end))
+    return tuple(result)
 
 
 def _mesh_of(solution: Solution, rod: str) -> RodMesh:

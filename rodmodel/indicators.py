@@ -65,11 +65,10 @@ def indicators(solution: Solution) -> Mapping[str, RodIndicators]:
         levels = np.array([element.fields.level for element in assembled.elements])
         by_degree = np.zeros((len(levels), levels.max() + 1))
         energy, along, fall = np.empty((3, len(levels)))
-        for number, (element, values) in enumerate(
-            zip(assembled.elements, solution.states[name].coefficients, strict=True)
-        ):
-            energy[number], by_degree[number, : element.fields.level + 1] = _energies(element, values)
-            along[number], fall[number] = _further_orders(element, values)
+        coefficients = solution.states[name].coefficients
+        for number, (element, values) in enumerate(zip(assembled.elements, coefficients, strict=True)):
+            degrees = by_degree[number, : element.fields.level + 1]
+            energy[number], degrees[:], along[number], fall[number] = _looked_at(element, values)
         result[name] = RodIndicators(scale * energy, scale * by_degree, levels, scale * along, fall)
     return result
 
@@ -127,45 +126,36 @@ def _height(assembled: AssembledRod) -> float:
 
 def unit_energy(element: Element, values: Array) -> float:
     """Elastic energy of an element for unit axial modulus; `values` of shape (order + 1, n_fields)."""
-    return float(_unit_energies(element, values[..., None])[0])
+    return _looked_at(element, values)[0]
 
 
-def _unit_energies(element: Element, values: Array) -> Array:
-    """Elastic energies of an element for unit axial modulus, shape (n,); `values` of shape (order + 1, n_fields, n)."""
-    count = values.shape[-1]
-    nodal, bubbles = values[:2].reshape(-1, count), values[2:].reshape(-1, count)
-    # L^T b + L^-1 K_bn n, in which |.|^2 / 2 is what condensation leaves over of the energy.
-    factors = zip(element.bubbles.groups, element.bubbles.blocks, strict=True)
-    half = np.concatenate([block.T @ bubbles[group] for group, block in factors])
-    half += element.half_coupling @ nodal
-    return 0.5 * np.asarray((nodal * (element.condensed @ nodal)).sum(axis=0) + (half**2).sum(axis=0))
-
-
-def _energies(element: Element, values: Array) -> tuple[float, Array]:
-    """Unit energy in all, and in the fields of each degree from 0 to the element's level alone."""
+def _looked_at(element: Element, values: Array) -> tuple[float, Array, float, float]:
+    """Unit energy of an element in all and in the fields of each degree alone, and what `_further_orders` says."""
     _, i, j = element.fields.table
     of_degree = (i + j)[:, None] == np.arange(-1, element.fields.level + 1)
     of_degree[:, 0] = True
-    found = _unit_energies(element, values[..., None] * of_degree)
-    return float(found[0]), found[1:]
+    each = values[..., None] * of_degree
+    nodal, bubbles = each[:2].reshape(-1, of_degree.shape[1]), each[2:].reshape(-1, of_degree.shape[1])
+    groups = element.bubbles.groups
+    half = np.concatenate(
+        [block.T @ bubbles[group] for group, block in zip(groups, element.bubbles.blocks, strict=True)]
+    )
+    orders = 2 + np.concatenate(groups) // element.fields.count
+    surplus = _further_orders(0.5 * half[:, 0] ** 2, orders, element.order)
+    # L^T b + L^-1 K_bn n, in which |.|^2 / 2 is what condensation leaves over of the energy.
+    half += element.half_coupling @ nodal
+    energies = 0.5 * ((nodal * (element.condensed @ nodal)).sum(axis=0) + (half**2).sum(axis=0))
+    return float(energies[0]), energies[1:], *surplus
 
 
-def _further_orders(element: Element, values: Array) -> tuple[float, float]:
-    """Unit energy that all further orders would find, and by what factor it falls with each, going by the last two."""
-    last, both = (_surplus(element, values, orders) for orders in (1, 2))
-    fall = min(SLOWEST, last / (both - last)) if both > last else SLOWEST
-    return last * fall / (1.0 - fall), fall
+def _further_orders(surplus: Array, orders: NDArray[np.int64], order: int) -> tuple[float, float]:
+    """Unit energy that all further orders would find, and by what factor it falls with each, going by the last two.
 
-
-def _surplus(element: Element, values: Array, orders: int) -> float:
-    """Energy that the element would lose with its highest orders, all lower bubbles free to make up for it.
-
-    The highest bubbles come last, so that the last block of the factor of K_bb is that of their Schur complement.
+    surplus : |L^T b|^2 / 2 of each bubble. The highest bubbles come last in the factor of K_bb, whose last block is
+        that of their Schur complement: their part is what the element would lose without them, all lower ones free to
+        make up for it
+    orders : of each bubble
     """
-    first = max(element.order - 1 - orders, 0) * element.fields.count
-    bubbles, energy = values[2:].ravel(), 0.0
-    for group, block in zip(element.bubbles.groups, element.bubbles.blocks, strict=True):
-        start = int(np.searchsorted(group, first))
-        half = block[start:, start:].T @ bubbles[group[start:]]
-        energy += 0.5 * float(half @ half)
-    return energy
+    last, before = (float(surplus[orders == each].sum()) for each in (order, order - 1))
+    fall = min(SLOWEST, last / before) if before > 0.0 else SLOWEST
+    return last * fall / (1.0 - fall), fall

@@ -8,7 +8,7 @@ import pytest
 
 from cases.loader import load_case
 from reports import command_line
-from reports.choice import chosen_elements, strip
+from reports.choice import chosen_elements, sign, strip
 from reports.levels_figure import levels_figure
 from reports.result import Result
 from rodmodel import AdaptiveSolution, solve_to
@@ -84,4 +84,4 @@ def test_a_strip_shows_every_element(found: AdaptiveSolution) -> None:
 
     cells = strip(elements).strip("|").split("|")
 
-    assert [cell[0] for cell in cells] == [str(each.level) for each in elements]
+    assert [cell[0] for cell in cells] == [sign(each.level) for each in elements]
