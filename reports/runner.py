@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import statistics
 import time
-from collections import deque
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
@@ -27,7 +26,7 @@ from reports.peers import PeerRun, SideBySide, ask_peers, side_by_side, stations
 from reports.processes import ProcessFailed, Progress, failure_reason, in_own_process
 from reports.quantities import ContactQuantities, PressureProfile, Quantities, RodQuantities, evaluate
 from reports.solution import Model, Solution
-from reports.surface import PressedFace, RodSurface, Surface, SurfaceSolution, surface
+from reports.surface import PressedFace, RodSurface, Surface, surface
 
 # The rod model answers in milliseconds; its seconds are the median of this many runs.
 ROD_REPEATS = 5
@@ -126,13 +125,16 @@ def run_rod(
     level: int | None = None,
     order: int | None = None,
     repeats: int = 1,
-    solved: Callable[[SurfaceSolution], None] = lambda _: None,
+    solved: Callable[[Solution], None] = lambda _: None,
+    *,
+    drawn: bool = False,
 ) -> Run:
     """Solve a case with the rod model; level and order are the case's where they are not given.
 
     Parameters
     ----------
     solved : called with every solution, for those who want more than the quantities
+    drawn : whether the surface is wanted, too
 
     Raises
     ------
@@ -157,7 +159,8 @@ def run_rod(
         solve_seconds=statistics.median(quantities.solve_seconds for quantities, _ in runs),
     )
     total = statistics.median(seconds for _, seconds in runs)
-    return Run("rod", levels, orders, quantities, total, peak_memory())
+    found = Run("rod", levels, orders, quantities, total, peak_memory())
+    return replace(found, surface=surface(solution)) if drawn else found
 
 
 def run_reference(case: Case, mesh: Path | None = None, solved: Callable[[Solution], None] = lambda _: None) -> Run:
@@ -200,9 +203,7 @@ def run_case(case: Case, progress: Progress, cache: Cache | None = None) -> Case
     rod = _kept_rod(case, cache)
     if rod is None:
         progress("rod model")
-        solved = deque[SurfaceSolution](maxlen=1)
-        rod = run_rod(case, repeats=ROD_REPEATS, solved=solved.append)
-        rod = replace(rod, surface=surface(solved[-1]))
+        rod = run_rod(case, repeats=ROD_REPEATS, drawn=True)
         if cache is not None:
             cache.keep("rod", _rod_question(case), rod)
 

@@ -283,7 +283,7 @@ def test_a_case_that_3d_refuses_runs_to_its_end(untreated: CaseRun, monkeypatch:
     def refuse(scene: Scene, progress: object) -> None:
         raise SceneError("rods.ring.centre_line", "an arc", "the 3D reference does not mesh it")
 
-    monkeypatch.setattr(runner, "run_rod", lambda case, repeats: untreated.rod)
+    monkeypatch.setattr(runner, "run_rod", lambda case, **_: untreated.rod)
     monkeypatch.setattr("reference3d.solve_sequence", refuse)
 
     found = runner.run_case(untreated.case, lambda _: None)
