@@ -52,7 +52,7 @@ def new_case_file(name: str, template: str | None, title: str | None, given: Map
     if chosen is not None:
         _require_choices(chosen, given)
     notes = []
-    if sys.stdin.isatty():
+    if sys.stdin is not None and sys.stdin.isatty():
         console = Console(stderr=True, highlight=False)
         try:
             chosen = asked_template(console) if chosen is None else chosen

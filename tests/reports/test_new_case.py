@@ -160,8 +160,8 @@ def test_the_first_line_leads_editors_to_the_schema_beside_the_file(folder: Path
 
 
 def test_the_schema_beside_the_library_is_that_of_the_code() -> None:
-    # `rodcheck schema case > cases/library/case.schema.json` renews it.
-    assert (LIBRARY / SCHEMA).read_text(encoding="utf-8") == schema_text()
+    same = (LIBRARY / SCHEMA).read_text(encoding="utf-8") == schema_text()
+    assert same, "renew it: rodcheck schema case > cases/library/case.schema.json"
 
 
 def test_on_a_terminal_what_is_missing_is_asked_and_asked_again(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
