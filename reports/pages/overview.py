@@ -71,7 +71,7 @@ def overview_row(run: CaseRun | Failure, drifts: Sequence[Drift] | None) -> dict
         "searched": " ".join(f"{case.title} {case.name} {case.description}".lower().split()),
         "states": ",".join([*found, *(["moved"] if moved else [])]),
         "rank": STATES.index(found[0]),
-        "failed": isinstance(run, Failure),
+        "failure": run.reason if isinstance(run, Failure) else "",
         "counts": Counter(comparison.verdict for comparison in comparisons),
         "moved": moved,
         "cells": [EMPTY] * 7 if isinstance(run, Failure) else _cells(run),

@@ -29,6 +29,7 @@ from reports import runner, site
 from reports.applied_forces import applied_forces, reactions
 from reports.case_comparison import comparisons_without_reference
 from reports.equilibrium import equilibrium_residual, equilibrium_resultants
+from reports.pages.case import ALONE_CAPTION
 from reports.picture import deformed_surface
 from reports.quantities import default_stations, evaluate
 from reports.runner import CaseRun, Run, passed
@@ -263,10 +264,10 @@ def test_without_3d_the_table_says_why(untreated: CaseRun, capsys: pytest.Captur
 
 
 def test_without_3d_the_page_stands_and_says_why(untreated: CaseRun) -> None:
-    page = site.render([untreated], {"ring": site.DrawnPicture("", 0, 0, "", "not drawn")})
+    page = site.case_pages([untreated], {"ring": site.DrawnPicture("", 0, 0, "", "not drawn")})["ring"]
 
     assert "The 3D reference cannot treat this case. rods.ring.centre_line: found an arc" in page
-    assert site.ALONE_CAPTION in page
+    assert ALONE_CAPTION in page
     assert page.count('class="verdict not-resolved"') >= 3
 
 

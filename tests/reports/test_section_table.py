@@ -8,7 +8,7 @@ import pytest
 from cases.loader import load_case
 from cases.scene import Box, Circle, Polygon, Rectangle, Rod, Section
 from reports.section_table import SectionTable, section_table
-from reports.site import DrawnPicture, render
+from reports.site import DrawnPicture, case_pages
 
 ANGLE = Polygon(((0.0, 0.0), (30.0, 0.0), (30.0, 5.0), (5.0, 5.0), (5.0, 30.0), (0.0, 30.0)))
 
@@ -69,7 +69,8 @@ def test_a_section_too_thin_for_the_highest_degree_is_told_with_a_lower_one(monk
 
 
 def test_the_case_page_shows_the_sections_of_its_rods(case_run) -> None:
-    page = render([case_run], {case_run.case.name: DrawnPicture("iVBORw0KGgo=", 1800, 700, "10", "")})
+    name = case_run.case.name
+    page = case_pages([case_run], {name: DrawnPicture("iVBORw0KGgo=", 1800, 700, "10", "")})[name]
 
     assert "I<sub>x</sub>" in page
     assert page.count('<table class="sections">') == 1

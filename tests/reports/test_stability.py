@@ -260,8 +260,8 @@ class TestPage:
         assert summary(broken)[0].startswith("Order: does not hold.")
 
     def test_report_links_to_the_page_where_there_is_one(self) -> None:
-        assert f'href="{FILE_NAME}"' in site.render([], {}, [FILE_NAME])
-        assert FILE_NAME not in site.render([], {})
+        assert f'href="{FILE_NAME}"' in site.overview_page([], [FILE_NAME])
+        assert FILE_NAME not in site.overview_page([])
 
     def test_page_is_written_whole(self, few: Stability, tmp_path: Path) -> None:
         path = write_stability(few, tmp_path)
