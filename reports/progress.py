@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
-from contextlib import AbstractContextManager
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import AbstractContextManager, contextmanager
 from typing import TypeVar
 
 from rich.console import Console
@@ -27,15 +27,8 @@ def run_with_progress(
     cases: Sequence[Case], cache: Cache | None = None, peers: bool = False
 ) -> list[CaseRun | Failure]:
     """Run cases one after the other behind a progress bar."""
-    console = Console(stderr=True)
     steps = STEPS + (len(PEERS) if peers else 0)
-    columns = (
-        TextColumn("{task.description}"),
-        BarColumn(),
-        MofNCompleteColumn(),
-        TimeElapsedColumn(),
-    )
-    with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as bars:
+    with _bars() as bars:
         task = bars.add_task("", total=steps * len(cases))
 
         def begun(case: Case, what: str) -> None:
@@ -54,7 +47,27 @@ def progress(steps: Iterable[Step], count: int, text: str) -> Iterator[Step]:
 
     count : how many there are
     """
+    with _bars() as bars:
+        yield from bars.track(steps, total=count, description=text)
+
+
+@contextmanager
+def announced(title: str, count: int) -> Iterator[Callable[[str], None]]:
+    """A progress bar, and what is to be told of each step when it begins.
+
+    count : how many steps there are
+    """
+    with _bars() as bars:
+        task = bars.add_task("", total=count)
+
+        def begun(what: str) -> None:
+            bars.update(task, description=f"{title}: {what}")
+            bars.advance(task)
+
+        yield begun
+
+
+def _bars() -> Progress:
     console = Console(stderr=True)
     columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
-    with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as bars:
-        yield from bars.track(steps, total=count, description=text)
+    return Progress(*columns, console=console, transient=True, disable=not console.is_terminal)

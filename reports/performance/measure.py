@@ -9,15 +9,13 @@ from dataclasses import dataclass
 
 import numpy as np
 import scipy
-from rich.console import Console
-from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeElapsedColumn
-from rich.progress import Progress as Bars
 
 from reports.performance import levels, parts, scaling
 from reports.performance.levels import LevelStudy, measured_levels
 from reports.performance.parts import Breakdown, measured_parts
 from reports.performance.scaling import Kind, Series, Size, empty_process, measured_seconds, measured_size
 from reports.processes import in_own_process
+from reports.progress import announced
 
 
 @dataclass(frozen=True)
@@ -44,17 +42,9 @@ def measure() -> Performance:
     ProcessFailed
         if a measurement raises or its process ends early.
     """
-    console = Console(stderr=True)
-    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
-    with Bars(*columns, console=console, transient=True, disable=not console.is_terminal) as bars:
-        kinds = [(elements, True) for elements in scaling.SIZES]
-        kinds += [(elements, False) for elements in scaling.UNEQUAL_SIZES]
-        task = bars.add_task("", total=scaling.ROUNDS + len(kinds) + 3)
-
-        def begun(what: str) -> None:
-            bars.update(task, description=f"performance: {what}")
-            bars.advance(task)
-
+    kinds = [(elements, True) for elements in scaling.SIZES]
+    kinds += [(elements, False) for elements in scaling.UNEQUAL_SIZES]
+    with announced("performance", scaling.ROUNDS + len(kinds) + 3) as begun:
         series = measured_series(kinds, begun)
         begun("parts of a solve")
         breakdown = in_own_process(measured_parts, parts.REPEATS)

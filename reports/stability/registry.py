@@ -6,11 +6,8 @@ import time
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from rich.console import Console
-from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeElapsedColumn
-from rich.progress import Progress as Bars
-
 from reports.processes import Progress, in_own_process
+from reports.progress import announced
 from reports.stability import (
     axial_order,
     border_search,
@@ -68,15 +65,7 @@ def carry_out() -> Stability:
     ProcessFailed
         if a sweep raises or the process ends early.
     """
-    console = Console(stderr=True)
-    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
-    with Bars(*columns, console=console, transient=True, disable=not console.is_terminal) as bars:
-        task = bars.add_task("", total=len(SWEEPS))
-
-        def begun(name: str) -> None:
-            bars.update(task, description=f"stability: {name}")
-            bars.advance(task)
-
+    with announced("stability", len(SWEEPS)) as begun:
         return in_own_process(_measured, tuple(BY_NAME), begun)
 
 

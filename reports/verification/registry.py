@@ -2,11 +2,8 @@
 
 from __future__ import annotations
 
-from rich.console import Console
-from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeElapsedColumn
-from rich.progress import Progress as Bars
-
 from reports.processes import Progress, in_own_process
+from reports.progress import announced
 from reports.verification import (
     bands,
     bending,
@@ -44,15 +41,7 @@ def verify() -> dict[str, Outcome]:
     ProcessFailed
         if a check raises or the process ends early.
     """
-    console = Console(stderr=True)
-    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
-    with Bars(*columns, console=console, transient=True, disable=not console.is_terminal) as bars:
-        task = bars.add_task("", total=len(CHECKS))
-
-        def begun(name: str) -> None:
-            bars.update(task, description=f"verification: {name}")
-            bars.advance(task)
-
+    with announced("verification", len(CHECKS)) as begun:
         found = in_own_process(_numbers, tuple(CHECKS), begun)
     return {name: Outcome(CHECKS[name], reference, values) for name, (reference, values) in found.items()}
 
