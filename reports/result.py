@@ -92,7 +92,7 @@ class RodCurves(_Object):
 class GoalEstimate(_Object):
     """A quantity that the solver watched, and how far its own limit may be from it."""
 
-    kind: str = Field(description="'contact force', 'deflection' (the largest), 'clamp moment' or 'contact edge'.")
+    kind: str = Field(description="'contact force', largest 'deflection', 'clamp moment', 'contact edge' or 'energy'.")
     of: str = Field(description="Name of the rod or contact pair.")
     unit: str
     value: float

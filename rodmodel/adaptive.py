@@ -336,7 +336,11 @@ def estimated(steps: Sequence[Step], seen: Look) -> tuple[Estimate, ...]:
     left = seen.left_over() / found if found > 0.0 else 0.0
     rest = seen.along + seen.indentation()
     scales = {goal: _scale(goal, last) for goal in last}
-    changes = {goal: abs(value - first.get(goal, np.inf)) / scales[goal] for goal, value in last.items()}
+    changes = {}
+    for goal, value in last.items():
+        # a rod that contact had not reached had no deflection
+        before = first.get(goal, np.inf if goal.kind == "contact edge" else 0.0)
+        changes[goal] = abs(value - before) / scales[goal]
     most = max((change for goal, change in changes.items() if goal.kind != "contact edge"), default=0.0)
     estimates = []
     for goal, value in last.items():

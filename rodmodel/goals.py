@@ -27,19 +27,20 @@ class Goal:
     Attributes
     ----------
     kind : resultant of a pair's contact pressure (N); largest displacement of a rod's centre line (mm); largest moment
-        that a clamp exerts on a rod (N mm); end of a stretch in contact (mm along the pair's first rod)
-    of : name of the pair or rod
+        that a clamp exerts on a rod (N mm); end of a stretch in contact (mm along the pair's first rod); elastic energy
+        (N mm) of a scene that has none of these
+    of : name of the pair, the rod or the scene
     number : of the edge, from 0 at the zone's start
     """
 
-    kind: Literal["contact force", "deflection", "clamp moment", "contact edge"]
+    kind: Literal["contact force", "deflection", "clamp moment", "contact edge", "energy"]
     of: str
     number: int = 0
 
     @property
     def unit(self) -> str:
         """Of its value."""
-        return {"contact force": "N", "clamp moment": "N mm"}.get(self.kind, "mm")
+        return {"contact force": "N", "clamp moment": "N mm", "energy": "N mm"}.get(self.kind, "mm")
 
 
 def goals(solution: Solution) -> Mapping[Goal, float]:
@@ -57,6 +58,9 @@ def goals(solution: Solution) -> Mapping[Goal, float]:
         moment = clamp_moment(solution, scene, rod)
         if moment > 0.0:
             found[Goal("clamp moment", rod.name)] = moment
+    if not found:
+        # a rod that is twisted about its centre line, which stays
+        found[Goal("energy", scene.name)] = solution.stored_energy
     for pair in scene.contacts:
         ends = [at for each in solution.stretches if each.pair == pair.name for at in (each.start, each.end)]
         found |= {Goal("contact edge", pair.name, number): end for number, end in enumerate(ends)}

@@ -64,6 +64,20 @@ def test_what_equilibrium_fixes_is_known():
     assert moment.relative < 1e-7
 
 
+def test_a_twisted_bar_whose_centre_line_stays_is_solved_to_its_energy():
+    rod = rm.Rod("bar", rm.Line((0, 0, 0), (100, 0, 0), (0, 1, 0)), rm.Rectangle(10, 10), STEEL, (0, 50, 100))
+    holds = rm.Support("bar", 0.0, ("x", "y", "s", "turn x", "turn y", "turn s"), of="mean")
+    twist = rm.SectionMoment("bar", 100, (1e4, 0, 0))
+    found = solve_to(rm.Scene("bar", (rod,), (holds,), (twist,), ()), 1e-2)
+
+    # Saint-Venant: T^2 l / (2 G J), J = 0.1406 a^4 (Timoshenko, Goodier, Theory of Elasticity, section 109); the end
+    # that is loaded and the one that is held warp otherwise within a height
+    exact = 1e4**2 * 100.0 / (2.0 * 200e3 / 2.6 * 0.1406 * 10.0**4)
+    (energy,) = found.estimates
+    assert found.outcome == "converged"
+    assert energy.value == pytest.approx(exact, rel=0.02)
+
+
 def test_most_of_what_is_paid_for_is_the_last_step():
     assert [step.level for step in solve_to(paper("e50-g0"), 1e-3).steps] == [2, 4]
 
