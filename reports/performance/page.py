@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from reports.html import rendered
+from reports.html import PLOTLY_FILE, rendered, write_plotly
 from reports.performance import wording
 from reports.performance.figures import levels_figure, memory_figure, relative_figure, seconds_figure
 from reports.performance.levels import LevelStudy
@@ -27,6 +27,7 @@ def write_performance(found: Performance, output: Path) -> Path:
     OSError
         if the folder or the file cannot be written.
     """
+    write_plotly(output)
     write_whole(output / FILE_NAME, render(found))
     return output / FILE_NAME
 
@@ -42,6 +43,7 @@ def render(found: Performance) -> str:
     return rendered(
         "performance/page.html.jinja",
         {f"figure-{name}": figure for name, figure in figures.items()},
+        PLOTLY_FILE,
         heights={name: figure.layout.height for name, figure in figures.items()},
         machine=found.machine,
         level=LEVEL,

@@ -9,7 +9,7 @@ from typing import Any
 
 from markupsafe import Markup
 
-from reports.html import rendered
+from reports.html import PLOTLY_FILE, rendered, write_plotly
 from reports.stability.figures import HEIGHT, Look, figure, looks
 from reports.stability.registry import SWEEPS, Stability
 from reports.stability.sweep import Found, Picture, Sweep
@@ -35,6 +35,7 @@ def write_stability(stability: Stability, output: Path) -> Path:
     OSError
         if the folder or the file cannot be written.
     """
+    write_plotly(output)
     write_whole(output / FILE_NAME, render(stability))
     return output / FILE_NAME
 
@@ -49,7 +50,12 @@ def render(stability: Stability) -> str:
         for picture, place in zip(sweep.pictures, section["pictures"], strict=True):
             figures[place["anchor"]] = figure(sweep, picture, found[picture.key])
     return rendered(
-        "stability/page.html.jinja", figures, sweeps=content, height=HEIGHT, seconds=f"{stability.seconds:.0f}"
+        "stability/page.html.jinja",
+        figures,
+        PLOTLY_FILE,
+        sweeps=content,
+        height=HEIGHT,
+        seconds=f"{stability.seconds:.0f}",
     )
 
 

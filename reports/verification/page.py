@@ -1,4 +1,4 @@
-"""The verification page: one self-contained HTML page, a table and a figure for each group of checks."""
+"""The verification page: a table and a figure for each group of checks."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from reports.html import rendered
+from reports.html import PLOTLY_FILE, rendered, write_plotly
 from reports.store import write_whole
 from reports.verification.check import Group, Outcome
 from reports.verification.figures import error_figure
@@ -24,6 +24,7 @@ def write_verification(groups: Sequence[Group], outcomes: Mapping[str, Outcome],
     OSError
         if the folder or the file cannot be written.
     """
+    write_plotly(output)
     write_whole(output / FILE_NAME, render(groups, outcomes))
     return output / FILE_NAME
 
@@ -37,7 +38,7 @@ def render(groups: Sequence[Group], outcomes: Mapping[str, Outcome]) -> str:
         figure = error_figure(found)
         figures[f"{anchor}-figure"] = figure
         content.append(_group(group, found, anchor, figure.layout.height))
-    return rendered("verification/page.html.jinja", figures, groups=content)
+    return rendered("verification/page.html.jinja", figures, PLOTLY_FILE, groups=content)
 
 
 def _group(group: Group, outcomes: Sequence[Outcome], anchor: str, height: int) -> dict[str, Any]:

@@ -15,6 +15,7 @@ import numpy as np
 import pytest
 
 from reports import command_line
+from reports.html import PLOTLY_FILE
 from reports.memory import peak_memory
 from reports.performance import wording
 from reports.performance.levels import LevelStudy, Setting, measured_levels
@@ -239,6 +240,7 @@ def test_the_page_fetches_nothing_and_every_figure_has_its_place_and_its_caption
     page = render(performance)
 
     links = Links(page)
+    assert links.targets.pop() == PLOTLY_FILE
     assert all(target.startswith("#") for target in links.targets)
     assert {target[1:] for target in links.targets} <= set(links.ids)
     assert "default-src 'none'" in page

@@ -14,6 +14,7 @@ import pytest
 import reference3d
 from reference3d import grading
 from reports import command_line
+from reports.html import PLOTLY_FILE
 from reports.processes import ProcessFailed
 from reports.verification import bands, bending, contact_3d, curved, published, solid, solid_elements, torsion, wording
 from reports.verification.check import Check, Outcome, Reference
@@ -205,6 +206,7 @@ def test_the_page_fetches_nothing_and_its_links_lead_somewhere(outcomes: dict[st
     page = render(GROUPS, outcomes)
 
     elements = Elements(page)
+    assert elements.targets.pop() == PLOTLY_FILE
     assert elements.targets
     assert {target[1:] for target in elements.targets} <= set(elements.ids)
     assert all(target.startswith("#") for target in elements.targets)
