@@ -46,6 +46,27 @@ def edges_meet(first: Corners, second: Corners) -> _BoolArray:
     return np.asarray(straddle & ~apart.any(axis=-1))
 
 
+def narrowest(first: Corners, second: Corners | None = None) -> float:
+    """Least distance of a corner of one polygon from an edge of another, or from one of its own that it does not end.
+
+    It is zero for edges that fold back on the one before them, too, which `crosses_itself` leaves out.
+    """
+    if second is not None:
+        return min(float(_distances(first, second).min()), float(_distances(second, first).min()))
+    count = len(first)
+    other = (np.arange(count)[:, None] - np.arange(count)) % count > 1
+    return float(_distances(first, first)[other].min())
+
+
+def _distances(corners: Corners, edges: Corners) -> _Array:
+    """Distances of corners from the edges of a polygon, shape (n_corners, n_edges); edges start at their corner."""
+    point, start = np.array(corners, dtype=float)[:, None], np.array(edges, dtype=float)[None, :]
+    along, away = np.roll(start, -1, axis=1) - start, point - start
+    squared = np.maximum((along**2).sum(axis=-1), np.finfo(float).tiny)  # lengths may underflow
+    share = np.clip((away * along).sum(axis=-1) / squared, 0.0, 1.0)
+    return np.asarray(np.linalg.norm(away - share[..., None] * along, axis=-1))
+
+
 def crosses_itself(corners: Corners) -> bool:
     """Whether edges that are not neighbours meet."""
     count = len(corners)

@@ -9,12 +9,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cases.checks import require, require_positive
-from cases.polygon import centroid, crosses_itself, depth, edges_meet, signed_area
+from cases.polygon import centroid, crosses_itself, depth, edges_meet, narrowest, signed_area
 
 _Array = NDArray[np.float64]
 
 # Every edge is held against every other: 1000 corners take 0.2 s and 100 MB.
 MOST_CORNERS = 1000
+# Thickness of any part of a polygon, as a part of its size: thinner ones are slips of the pen.
+THINNEST = 1e-6
 
 
 @dataclass(frozen=True)
@@ -116,13 +118,22 @@ class Polygon:
             remedy = "name the corners in order around the section"
             require(not crosses_itself(corners), key, "edges that cross or touch each other", remedy)
             require(signed_area(corners) != 0.0, key, "corners along one line", remedy)
+            self._require_thick(key, narrowest(corners))
         for index, (key, hole) in enumerate(loops[1:]):
             inside = depth(self.outer, hole[0]) > 0.0 and not edges_meet(self.outer, hole).any()
             require(inside, key, "corners on or beyond the outer edges", "a hole lies within the section")
+            self._require_thick(key, narrowest(self.outer, hole))
             for other in self.holes[:index]:
                 apart = not edges_meet(other, hole).any()
                 apart = apart and depth(other, hole[0]) < 0.0 and depth(hole, other[0]) < 0.0
                 require(apart, key, "corners within another hole", "holes lie apart from each other")
+                self._require_thick(key, narrowest(other, hole))
+
+    def _require_thick(self, key: str, thickness: float) -> None:
+        """See that no part is so thin that it is none for whoever meshes or integrates the section."""
+        size = float(np.ptp(np.array(self.outer), axis=0).max())
+        found = f"a part that is {thickness:.3g} mm thick"
+        require(thickness > THINNEST * size, key, found, f"more than {THINNEST:g} of the section's size is needed")
 
     @property
     def centroid(self) -> tuple[float, float]:

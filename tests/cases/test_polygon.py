@@ -2,7 +2,8 @@
 
 import pytest
 
-from cases.polygon import centroid, crosses_itself, depth, signed_area
+from cases.polygon import centroid, crosses_itself, depth, narrowest, signed_area
+from cases.scene import Polygon, SceneError
 
 L_SHAPE = ((0.0, 0.0), (3.0, 0.0), (3.0, 1.0), (1.0, 1.0), (1.0, 3.0), (0.0, 3.0))
 
@@ -38,3 +39,33 @@ def test_edges_that_meet_are_found(corners, crosses):
 def test_depth_is_the_distance_from_the_edges_positive_inside(point, expected):
     assert depth(L_SHAPE, point) == pytest.approx(expected, abs=1e-15)
     assert depth(L_SHAPE[::-1], point) == pytest.approx(expected, abs=1e-15)
+
+
+@pytest.mark.parametrize(
+    ("corners", "thickness"),
+    [
+        pytest.param(L_SHAPE, 1.0, id="two legs"),
+        pytest.param(((0.0, 0.0), (20.0, 0.0), (20.0, 6.0), (6.0, 6.0), (6.0, 1e-3), (0.0, 20.0)), 1e-3, id="pinched"),
+        pytest.param(((0.0, 0.0), (4.0, 0.0), (4.0, 4.0), (0.0, 4.0), (3.0, 4.0)), 0.0, id="folded back"),
+    ],
+)
+def test_the_narrowest_place_is_that_of_a_corner_and_an_edge(corners, thickness):
+    assert narrowest(corners) == pytest.approx(thickness, abs=1e-15)
+
+
+def test_the_narrowest_place_between_two_polygons_is_found_from_either():
+    square, beside = ((0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)), ((1.25, 0.5), (3.0, 0.0), (3.0, 1.0))
+
+    assert narrowest(square, beside) == narrowest(beside, square) == 0.25
+
+
+@pytest.mark.parametrize(
+    ("outer", "holes", "key"),
+    [
+        (((0.0, 0.0), (20.0, 0.0), (20.0, 6.0), (6.0, 6.0), (6.0, 1e-30), (0.0, 20.0)), (), "outer"),
+        (((0.0, 0.0), (9.0, 0.0), (0.0, 9.0)), (((1.0, 1e-7), (2.0, 1.0), (1.0, 2.0)),), "holes #1"),
+    ],
+)
+def test_a_section_with_a_part_of_no_thickness_is_refused(outer, holes, key):
+    with pytest.raises(SceneError, match=f"{key}: found a part that is .* mm thick; more than 1e-06 of the section"):
+        Polygon(outer, holes)
