@@ -41,8 +41,8 @@ MOST_STEPS = 4
 # what that changes is some 0.01 %, of small moments 0.3 %.
 UNMOVED_ENOUGH = 5e-3
 # How near to the edges of contact borders need to be, as a part of a stretch's length, over the root of the tolerance:
-# forces are off by the square of what borders are.
-EDGE_SHARE = 0.2
+# forces between rods are off by some thousandth of its square, small moments beside a bed by half of it.
+EDGE_SHARE, EDGE_SHARE_ON_BED = 3.0, 0.2
 # Power by which the error falls with the level: near corners; away from them where level 4 tells nothing yet, in smooth
 # sections and in walls that meet in corners; and its limits where higher levels tell it.
 CORNERS, SMOOTH, WALLS = 2.0, 4.0, 1.5
@@ -152,6 +152,7 @@ def solve_to(scene: Scene, tolerance: float) -> AdaptiveSolution:
     meshes = {rod.name: natural_mesh(finer, rod, FIRST_LEVEL, FIRST_ORDER) for rod in finer.rods}
     system_on = systems(scene, ElementStore())
     on_bed = any(pair.on_bed for pair in scene.contacts)
+    edge_share = (EDGE_SHARE_ON_BED if on_bed else EDGE_SHARE) * tolerance**0.5
     steps: list[Step] = []
     stretches: tuple[Stretch, ...] = ()
     while True:
@@ -159,7 +160,7 @@ def solve_to(scene: Scene, tolerance: float) -> AdaptiveSolution:
         if len(steps) == 0 or (tolerance > UNMOVED_ENOUGH and not on_bed):
             contact = unmoved_contact(system_on(meshes))
         else:
-            contact = moved_contact(scene, meshes, stretches, system_on, edge_share=EDGE_SHARE * tolerance**0.5)
+            contact = moved_contact(scene, meshes, stretches, system_on, edge_share=edge_share)
         solution = solution_of(scene, contact, begin, begin)
         stretches = snapped(scene, solution.stretches)
         meshes = {name: _mesh_of(solution, name) for name in meshes}
