@@ -68,6 +68,8 @@ def _typeset(page: str) -> str:
 
     def converted(found: re.Match[str]) -> str:
         within, alone = found.groups()
-        return convert(unescape(within)) if within else convert(unescape(alone), display="block")
+        if within:
+            return convert(unescape(within))
+        return f'<div class="formula">{convert(unescape(alone), display="block")}</div>'
 
     return FORMULA.sub(converted, page)
