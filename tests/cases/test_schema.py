@@ -12,6 +12,8 @@ from cases.form import FormError, checked_form
 from cases.loader import LIBRARY, TRUTH, library_names
 from cases.schema import case_schema
 
+VALIDATOR = jsonschema.Draft202012Validator(case_schema())
+
 
 def content(name):
     return tomllib.loads((LIBRARY / f"{name}.toml").read_text(encoding="utf-8"))
@@ -23,7 +25,7 @@ def test_the_schema_is_a_json_schema():
 
 @pytest.mark.parametrize("name", library_names())
 def test_every_library_file_fits_the_schema(name):
-    jsonschema.Draft202012Validator(case_schema()).validate(content(name))
+    VALIDATOR.validate(content(name))
 
 
 @pytest.mark.parametrize(
@@ -41,7 +43,7 @@ def test_the_schema_refuses_what_the_loader_refuses(table, key, value):
     wrong[table][key] = value
 
     with pytest.raises(jsonschema.ValidationError):
-        jsonschema.Draft202012Validator(case_schema()).validate(wrong)
+        VALIDATOR.validate(wrong)
 
 
 ONE_OF_EACH = {
@@ -97,13 +99,13 @@ def changed(*place, value, content=ONE_OF_EACH):
 
 
 def test_every_shape_and_load_fits_the_schema():
-    jsonschema.Draft202012Validator(case_schema()).validate(ONE_OF_EACH)
+    VALIDATOR.validate(ONE_OF_EACH)
 
     assert case_from("each", checked_form(ONE_OF_EACH), TRUTH).scene.rods[1].centre_line.twist == 1.5
 
 
 def test_the_case_that_uses_everything_fits_the_schema():
-    jsonschema.Draft202012Validator(case_schema()).validate(EVERYTHING)
+    VALIDATOR.validate(EVERYTHING)
 
 
 def elsewhere(*place, value):
@@ -140,7 +142,7 @@ def elsewhere(*place, value):
 )
 def test_schema_and_loader_refuse_the_same_files(wrong):
     with pytest.raises(jsonschema.ValidationError):
-        jsonschema.Draft202012Validator(case_schema()).validate(wrong)
+        VALIDATOR.validate(wrong)
     with pytest.raises(FormError):
         checked_form(wrong)
 

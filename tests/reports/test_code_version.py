@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import sys
+from collections.abc import Mapping
 from importlib.metadata import packages_distributions
 from pathlib import Path
 
@@ -91,8 +92,16 @@ def test_a_solver_counts_with_the_scene_and_the_quantities_but_not_with_the_othe
     assert not any(name.startswith((other, "reports.site", "reports.command_line")) for name in files)
 
 
+@pytest.fixture(scope="module")
+def distributions() -> Mapping[str, list[str]]:
+    """What brings each package that is installed."""
+    return packages_distributions()
+
+
 @pytest.mark.parametrize("solver", SOLVERS)
-def test_no_import_is_overlooked_and_every_package_below_counts_with_its_version(solver: str) -> None:
+def test_no_import_is_overlooked_and_every_package_below_counts_with_its_version(
+    solver: str, distributions: Mapping[str, list[str]]
+) -> None:
     files = source_files([solver, "reports.quantities"])
     roots = {name.partition(".")[0] for path in files.values() for name in imported_names(path)}
     everything = set()
@@ -105,7 +114,6 @@ def test_no_import_is_overlooked_and_every_package_below_counts_with_its_version
     assert roots == everything
 
     below = roots - set(OWN) - set(sys.stdlib_module_names)
-    known = packages_distributions()
 
-    assert {known[name][0] for name in below if name in known} <= set(DISTRIBUTIONS)
-    assert {name for name in below if name not in known} <= set(DISTRIBUTIONS)
+    assert {distributions[name][0] for name in below if name in distributions} <= set(DISTRIBUTIONS)
+    assert {name for name in below if name not in distributions} <= set(DISTRIBUTIONS)

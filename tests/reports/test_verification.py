@@ -187,6 +187,11 @@ def outcomes() -> dict[str, Outcome]:
     return found | {first.name: replace(found[first.name], values=tuple(3.0 for _ in first.levels))}
 
 
+@pytest.fixture(scope="module")
+def page(outcomes: dict[str, Outcome]) -> str:
+    return render(GROUPS, outcomes)
+
+
 class Elements(HTMLParser):
     """What the page refers to, its ids and its tags."""
 
@@ -202,9 +207,7 @@ class Elements(HTMLParser):
         self.ids += [given["id"] or ""] if "id" in given else []
 
 
-def test_the_page_fetches_nothing_and_its_links_lead_somewhere(outcomes: dict[str, Outcome]) -> None:
-    page = render(GROUPS, outcomes)
-
+def test_the_page_fetches_nothing_and_its_links_lead_somewhere(page: str) -> None:
     elements = Elements(page)
     assert elements.targets.pop() == PLOTLY_FILE
     assert elements.targets
@@ -219,9 +222,7 @@ def test_the_page_fetches_nothing_and_its_links_lead_somewhere(outcomes: dict[st
     assert "@import" not in styles
 
 
-def test_every_check_stands_on_the_page_with_one_marked_cell(outcomes: dict[str, Outcome]) -> None:
-    page = render(GROUPS, outcomes)
-
+def test_every_check_stands_on_the_page_with_one_marked_cell(page: str) -> None:
     rows = re.findall(r'<th scope="row">(.*?)</th>', page)
     assert rows == [check.name for check in ALL]
     cells = re.findall(r'<td class="n"><span class="verdict ([a-z-]+)">', page)
@@ -230,9 +231,7 @@ def test_every_check_stands_on_the_page_with_one_marked_cell(outcomes: dict[str,
         assert check.source.replace("'", "&#39;") in page
 
 
-def test_every_group_has_its_figure_on_a_logarithmic_scale(outcomes: dict[str, Outcome]) -> None:
-    page = render(GROUPS, outcomes)
-
+def test_every_group_has_its_figure_on_a_logarithmic_scale(page: str) -> None:
     figures = json.loads(re.search(r"const figures = (.*);\n", page).group(1))
     assert len(figures) == len(GROUPS)
     for (place, figure), group in zip(figures.items(), GROUPS, strict=True):
