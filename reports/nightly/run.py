@@ -1,7 +1,7 @@
 """A nightly run from its cases to report, history and summary.
 
 Everything is written in an order in which a kill between any two writes loses nothing: a case's answer as soon as it
-is there, then the history, report and summary, and only then is the run forgotten. Started again, the run goes on.
+is there, then the history, summary and report, and only then is the run forgotten. Started again, the run goes on.
 """
 
 from __future__ import annotations
@@ -100,8 +100,8 @@ def nightly(
         notes=list(dict.fromkeys(notes)),
         seconds=time.perf_counter() - begin,
     )
-    write_report(runs, output, pages.files, moved, [*earlier, *rows])
     write_whole(output / "summary.txt", text)
+    write_report(runs, output, pages.files, moved, [*earlier, *rows])
     unfinished.end()
     as_expected = not moved and not pages.missed and all(passed(run) for run in runs)
     return Outcome(tuple(runs), tuple(moved), as_expected, text)
