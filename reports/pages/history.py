@@ -63,16 +63,24 @@ def _values(rows: Sequence[Row], moved: Moved) -> list[dict[str, Any]]:
         last = each[-1]
         distance = by_difference(last) and last.relative
         scale = 100.0 if distance else 1.0
-        # Of several numbers, such as edges, the chart shows the first.
         line = _line(
             what + (" (difference)" if by_difference(last) else ""),
-            [(row, scale * measured(row)[0]) for row in each],
+            [
+                (row, scale * value)
+                for row, value in zip(each, _liveliest([measured(row) for row in each]), strict=True)
+            ],
             least=2.0 * scale * allowed(last),
             told=partial(_with_unit, "%" if distance else last.unit),
             moved=moved.get(("value", what), ""),
         )
         found.append(line | {"quantity": last.quantity})
     return found
+
+
+def _liveliest(numbers: Sequence[tuple[float, ...]]) -> list[float]:
+    """Of several numbers, such as edges, the one that moves most over the runs; the first if not all have as many."""
+    at = int(np.argmax(np.ptp(numbers, axis=0))) if len(set(map(len, numbers))) == 1 else 0
+    return [each[at] for each in numbers]
 
 
 def _with_unit(unit: str, value: float) -> str:

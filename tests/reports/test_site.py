@@ -14,13 +14,16 @@ from pathlib import Path
 from typing import Any
 from urllib.parse import unquote
 
+import numpy as np
 import pytest
 from markupsafe import escape
 
 from reports import site
 from reports.nightly.drift import Drift
 from reports.nightly.rows import rows_of, this_night
+from reports.pages.turning import turning_part
 from reports.processes import ProcessFailed
+from reports.quantities import DEFINITIONS
 from reports.runner import CaseRun, Failure
 
 PICTURE = site.DrawnPicture("iVBORw0KGgo=", 1800, 700, "10", "")
@@ -175,6 +178,34 @@ def test_the_history_has_a_chart_for_each_quantity_and_solver(case_run: CaseRun)
     assert page.count('<polyline class="line"') >= len(subjects)
     assert "3 runs since 01 November 2026" in page
     assert 'id="history"' not in case_page(case_run)
+
+
+def test_the_theory_page_defines_every_quantity_and_its_formulas_are_typeset(report: Path) -> None:
+    text = (report / "theory.html").read_text(encoding="utf-8")
+
+    assert set(DEFINITIONS) <= set(Links(text).ids)
+    assert text.count("<math") > 50
+    assert "merror" not in text
+    assert not re.search(r"\\[()\[\]a-z]", text.split("<main", 1)[1])
+
+
+def test_the_3d_view_holds_the_surface_of_both_models_to_16_bits(drawn_run: CaseRun) -> None:
+    part = turning_part(drawn_run)
+    data = json.loads(part["data"])
+
+    def values(text: str) -> np.ndarray:
+        return np.frombuffer(base64.b64decode(text), "<i2") / 32767
+
+    # Euler's beam bends in the XY plane: Z, the third coordinate, is that of the section, 15 mm wide.
+    for model, answer in zip(data["models"], (drawn_run.rod, drawn_run.references[-1]), strict=True):
+        for packed, rod in zip(model["rods"], answer.surface.rods, strict=True):
+            largest = np.abs(rod.stress_s).max()
+            assert packed["scale"] * values(packed["value"]) == pytest.approx(rod.stress_s, abs=largest / 32767)
+            depth = values(packed["position"]).reshape(-1, 3)[:, 2]
+            half = 7.5 / depth.max()  # mm, of the longest side of the whole
+            along = values(packed["position"]).reshape(-1, 3)[:, 0]
+            assert half * np.ptp(along) == pytest.approx(300.0, rel=1e-3)
+    assert len(part["data"]) < 300_000
 
 
 def test_the_case_file_stands_on_the_page_as_it_is(case_run: CaseRun, page: str) -> None:
