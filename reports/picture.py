@@ -114,7 +114,7 @@ def draw(scene: Scene, quantities: Quantities) -> Picture:
         width=0.40,
         height=0.13,
     )
-    return Picture(_photographed(plotter, scene, quantities), factor)
+    return Picture(_photographed(plotter, scene, quantities, below=0.03), factor)
 
 
 def draw_undeformed(scene: Scene, quantities: Quantities) -> Picture:
@@ -132,12 +132,12 @@ def draw_undeformed(scene: Scene, quantities: Quantities) -> Picture:
         bar = _closed(corners, np.zeros(corners.shape[1]), isinstance(rod.section, Polygon))
         plotter.add_mesh(bar, color=COLOURS[number % len(COLOURS)], ambient=0.35, diffuse=0.7)
         plotter.add_mesh(bar.extract_feature_edges(40.0), color=INK, line_width=2)
-        _add_text(plotter, found.position[:, len(found.station) // 2], rod.name)
+        _add_text(plotter, found.position[:, len(found.station) // 3], rod.name)
     for pair in scene.contacts:
         for sign in (-1.0, 1.0):
             plotter.add_mesh(_zone_border(scene, quantities, pair, sign), color=ZONE, line_width=6)
     _add_surroundings(plotter, scene, quantities, 1.0, shifts)
-    return Picture(_photographed(plotter, scene, quantities), 1.0)
+    return Picture(_photographed(plotter, scene, quantities, below=-0.01), 1.0)
 
 
 def _zone_border(scene: Scene, quantities: Quantities, pair: ContactPair, sign: float) -> pyvista.PolyData:
@@ -172,8 +172,11 @@ def _add_surroundings(
     _add_loads(plotter, scene, quantities, factor, shifts)
 
 
-def _photographed(drawn: pyvista.Plotter, scene: Scene, quantities: Quantities) -> bytes:
-    """The picture as PNG, seen across the plane that shows most, with a scale; the plotter is closed."""
+def _photographed(drawn: pyvista.Plotter, scene: Scene, quantities: Quantities, below: float) -> bytes:
+    """The picture as PNG, seen across the plane that shows most, with a scale; the plotter is closed.
+
+    below : room that is left below the scene for what stands there, as a part of its extent
+    """
     plotter: Any = drawn  # some of its methods are wrapped in a way that hides their arguments
     right, up = view_plane(scene, quantities)
     size = extent(quantities)
@@ -182,7 +185,7 @@ def _photographed(drawn: pyvista.Plotter, scene: Scene, quantities: Quantities) 
     _add_scale(plotter, quantities, right, up, stout)
     plotter.enable_parallel_projection()
     plotter.enable_anti_aliasing("ssaa")
-    lowered = -0.03 * size * up
+    lowered = -below * size * up
     plotter.view_vector(np.cross(right, up) + 0.30 * up - 0.10 * right, viewup=up)
     plotter.reset_camera()
     high = float(np.ptp(up @ np.hstack([rod.position for rod in quantities.rods])))
