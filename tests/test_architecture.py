@@ -45,6 +45,7 @@ def test_the_rod_model_needs_numpy_and_scipy_alone():
     assert roots - set(sys.stdlib_module_names) - OWN <= {"numpy", "scipy"}
 
 
+@pytest.mark.slow
 def test_importing_the_rod_model_brings_neither_mesher_nor_plots_nor_case_files():
     code = "import sys, rodmodel; print(*sys.modules)"
     out = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)

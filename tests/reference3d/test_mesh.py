@@ -45,6 +45,7 @@ def test_the_volume_is_that_of_the_box(mesh):
     assert volume == pytest.approx(7.0 * 4.0 * 8.0, rel=1e-12)
 
 
+@pytest.mark.slow
 def test_importing_the_package_does_not_import_gmsh():
     code = "import sys, reference3d; assert 'gmsh' not in sys.modules"
 

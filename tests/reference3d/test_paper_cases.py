@@ -40,6 +40,7 @@ def edges(profile):
     return np.array(found)
 
 
+@pytest.mark.slow
 def test_force_and_moment_of_the_default_mesh(paper_case, paper_solution, truth):
     values, solution = truth(paper_case), paper_solution(paper_case)
 
@@ -51,6 +52,7 @@ def test_force_and_moment_of_the_default_mesh(paper_case, paper_solution, truth)
     assert contact_centre(solution) == pytest.approx(values["contact_centre_mm"], abs=0.05)
 
 
+@pytest.mark.slow
 def test_deflection_curves_of_the_default_mesh(paper_case, paper_solution, truth):
     values, solution = truth(paper_case), paper_solution(paper_case)
 
@@ -58,6 +60,7 @@ def test_deflection_curves_of_the_default_mesh(paper_case, paper_solution, truth
         assert np.abs(found - expected).max() < 1e-3 * np.abs(expected).max()
 
 
+@pytest.mark.slow
 def test_contact_edges_of_the_default_mesh(paper_case, paper_solution, truth):
     found = edges(paper_solution(paper_case).contact_profile(PAIR))
 

@@ -131,6 +131,7 @@ def test_contact_forces_loads_and_reactions_are_in_equilibrium(paper_case, paper
     assert solution.residual < 1e-10
 
 
+@pytest.mark.slow
 def test_moments_from_stress_and_from_equilibrium_agree(paper_solution):
     solution = paper_solution("e50_g0")
     contact = solution.contact_points("lower-upper")
@@ -366,6 +367,7 @@ def test_non_matching_meshes_agree_with_matching_ones(two_cantilevers, paper_sol
     assert forces[1] == pytest.approx(forces[0], rel=1e-4)
 
 
+@pytest.mark.slow
 def test_a_rod_that_contact_cannot_balance_is_refused_by_name(two_cantilevers):
     """The upper bar, without its clamp, would tip about the end of the lower one."""
     scene = dataclasses.replace(two_cantilevers(50000.0, 0.0), supports=(Clamp("lower", "start"),))

@@ -159,6 +159,7 @@ Cache(Path({str(tmp_path)!r})).keep("rod", {QUESTION!r}, tuple(range(1000)))
     assert cache.notes == []
 
 
+@pytest.mark.slow
 def test_processes_that_keep_the_same_answer_at_once_do_not_disturb_each_other(tmp_path: Path) -> None:
     code = f"""
 from pathlib import Path
@@ -224,6 +225,7 @@ def run(case_run: CaseRun, folder: Path, **changes: object) -> CaseRun:
     return found
 
 
+@pytest.mark.slow
 def test_a_second_run_repeats_nothing_and_says_the_same(case_run: CaseRun, tmp_path: Path, solved: list[str]) -> None:
     first = run(case_run, tmp_path)
     second = run(case_run, tmp_path)

@@ -98,6 +98,7 @@ def distributions() -> Mapping[str, list[str]]:
     return packages_distributions()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("solver", SOLVERS)
 def test_no_import_is_overlooked_and_every_package_below_counts_with_its_version(
     solver: str, distributions: Mapping[str, list[str]]

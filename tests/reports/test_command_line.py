@@ -232,6 +232,7 @@ def test_a_case_that_failed_is_shown_with_its_reason_beside_the_others(
     assert "pass" in shown
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("verdict", ["fail", "not resolved"])
 def test_report_shows_verdicts_and_fails_on_none_of_them(
     verdict: str, case_run: CaseRun, solved, tmp_path: Path, capsys: pytest.CaptureFixture[str]
@@ -243,6 +244,7 @@ def test_report_shows_verdicts_and_fails_on_none_of_them(
     assert verdict in (tmp_path / "index.html").read_text()
 
 
+@pytest.mark.slow
 def test_report_exits_with_1_where_a_case_failed_to_run(case_run: CaseRun, solved, tmp_path: Path) -> None:
     solved(Failure(case_run.case, "the mesh is singular"), passing(case_run))
 
@@ -250,6 +252,7 @@ def test_report_exits_with_1_where_a_case_failed_to_run(case_run: CaseRun, solve
     assert "the mesh is singular" in (tmp_path / "index.html").read_text()
 
 
+@pytest.mark.slow
 def test_a_reader_that_stops_reading_is_no_error() -> None:
     command = f"{sys.executable} -c 'from reports.command_line import main; main()' schema case | head -n 1"
     done = subprocess.run(["bash", "-o", "pipefail", "-c", command], capture_output=True, text=True, check=False)
@@ -295,6 +298,7 @@ def test_an_interrupt_exits_with_130_and_no_traceback(
     assert "Traceback" not in shown.err
 
 
+@pytest.mark.slow
 def test_the_command_itself_keeps_its_streams_apart() -> None:
     call = "from reports.command_line import main; main()"
 
@@ -317,6 +321,7 @@ def test_help_says_what_every_argument_is() -> None:
         assert all(argument.parameter.help for argument in arguments), name
 
 
+@pytest.mark.slow
 def test_listing_cases_imports_no_solver_and_nothing_that_draws() -> None:
     call = (
         "import sys; from reports.command_line import run; run(['list']);"

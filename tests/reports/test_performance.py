@@ -137,6 +137,7 @@ def test_elements_of_unequal_length_all_differ() -> None:
     assert len(np.unique(np.round(unequal, 9))) == 50
 
 
+@pytest.mark.slow
 def test_peak_memory_does_not_count_what_the_starting_process_held() -> None:
     """getrusage does on Linux; 240 MB here, and a process that solves one element takes far less."""
     held = np.ones(30_000_000)
@@ -292,6 +293,7 @@ def test_a_measurement_that_failed_is_one_sentence_and_leaves_no_page(
     assert not list(tmp_path.iterdir())
 
 
+@pytest.mark.slow
 def test_the_report_of_the_whole_library_links_to_the_performance_page(
     case_run, performance: Performance, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -295,6 +295,7 @@ def test_verify_refuses_a_file_as_its_folder(tmp_path: Path, capsys: pytest.Capt
     assert capsys.readouterr().err.count("\n") == 1
 
 
+@pytest.mark.slow
 def test_the_report_of_the_whole_library_links_to_the_verification_page(
     case_run, outcomes: dict[str, Outcome], answered, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -165,6 +165,7 @@ def test_a_gap_by_table_is_as_given_between_its_stations() -> None:
     assert_complementary(touching)
 
 
+@pytest.mark.slow
 def test_rods_stacked_on_ground_pass_the_load_down() -> None:
     """Three loose bars on one another, the top one pressed: every contact carries the load and the weights above."""
     lengths = (100.0, 80.0, 60.0)

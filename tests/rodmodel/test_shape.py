@@ -114,6 +114,7 @@ def polygons(draw: st.DrawFn) -> Polygon:
     return Polygon(tuple(map(tuple, (middle + corners).tolist())), holes)
 
 
+@pytest.mark.slow
 @given(polygons())
 def test_any_polygon_is_integrated_as_the_divergence_theorem_says(section: Polygon) -> None:
     assert_exact(section, 6)

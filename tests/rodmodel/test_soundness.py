@@ -33,6 +33,7 @@ def told(solution: rm.Solution) -> float:
     return lost_accuracy(solution.system.rods["bar"], solution.states["bar"].coefficients)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("elements", [1000, 3000])
 def test_many_elements_of_a_slender_rod_lose_what_is_told(elements: int) -> None:
     length = 2e4 / 3.0 * SIDE

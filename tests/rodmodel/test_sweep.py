@@ -89,6 +89,7 @@ def test_every_answer_is_that_of_a_solution_of_its_own(
         require_same(found.solution, own)
 
 
+@pytest.mark.slow
 def test_searches_follow_the_edges_of_the_scenes_before(scene: Scene) -> None:
     found = swept(scene, with_modulus, np.linspace(49e3, 55e3, 12))
 

@@ -108,6 +108,7 @@ def test_the_reference_s_own_mesh_read_back_gives_its_own_answer(tmp_path: Path,
     assert found.strain_energy == pytest.approx(own.strain_energy, rel=1e-5)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("kind", "tolerance"), [("hexahedron27", 2e-3), ("hexahedron20", 8e-3), ("tetra10", 4e-3)])
 def test_a_cantilever_of_quadratic_elements(bars: Callable[..., Path], kind: str, tolerance: float) -> None:
     reference = own_cantilever()

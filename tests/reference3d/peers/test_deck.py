@@ -157,6 +157,7 @@ def deck_of_everything():
     return make_deck(everything())
 
 
+@pytest.mark.slow
 def test_every_word_is_one_of_abaqus(deck_of_everything):
     text = deck_text(deck_of_everything)
 
@@ -278,6 +279,7 @@ def test_equations_hold_in_rigid_motions_and_eliminate_each_unknown_once():
     assert others.isdisjoint(eliminated)
 
 
+@pytest.mark.slow
 def test_given_gaps_stand_for_the_drawn_distance_and_drawn_ones_do_not():
     leaves = bar("one"), bar("two", start=(0.0, 10.5, 0.0), end=(60.0, 10.5, 0.0))
 

@@ -30,6 +30,7 @@ def test_a_folder_is_for_one_run_at_a_time(tmp_path: Path) -> None:
         pass
 
 
+@pytest.mark.slow
 def test_a_killed_process_leaves_no_lock(tmp_path: Path) -> None:
     code = (
         "import sys, os; from pathlib import Path; from reports.nightly.unfinished import locked\n"

@@ -93,6 +93,7 @@ def test_a_case_that_never_ends_is_stopped_with_all_that_it_started(
     assert ends(child)
 
 
+@pytest.mark.slow
 def test_a_case_that_allocates_without_end_is_stopped(case_process: Processes, task: Task) -> None:
     case_process("held = []\nwhile True: held.append(bytes(2_000_000).replace(b'\\0', b'1'))")
 
@@ -147,6 +148,7 @@ def test_a_killed_process_is_told_apart_from_one_that_fails(case_process: Proces
     assert found.reason == "its process ended early with exit code 3"
 
 
+@pytest.mark.slow
 def test_a_killed_case_is_tried_again(case_process: Processes, task: Task, tmp_path: Path) -> None:
     once = "import os\nif not os.path.exists('tried'):\n    open('tried', 'w'); os.kill(os.getpid(), 9)\n"
     case_process(once + ANSWER)
@@ -170,6 +172,7 @@ def test_a_case_that_is_killed_every_time_is_reported_and_stops_nothing(case_pro
     assert reasons["killed"].endswith("tried 3 times")
 
 
+@pytest.mark.slow
 def test_a_local_cluster_listens_on_loopback_alone(case_process: Processes, task: Task) -> None:
     case_process(ANSWER)
     addresses = set()
