@@ -221,7 +221,6 @@ def styled(figure: go.Figure, height: int) -> go.Figure:
         font={"family": FONT, "size": 13, "color": INK},
         legend={"orientation": "h", "x": 0.0, "xanchor": "left", "y": 1.0, "yref": "container", "yanchor": "top"},
         hovermode="closest",
-        modebar={"bgcolor": "rgba(0,0,0,0)", "color": "#66717D", "activecolor": INK},
     )
     figure.update_annotations(font={"size": 14, "color": INK})
     figure.update_xaxes(

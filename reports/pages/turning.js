@@ -65,7 +65,7 @@
     traces.push({hoverinfo: "skip", showscale: false, visible: kind !== "pressure", ...trace});
     shown.push(kind);
   }
-  const light = {ambient: 0.75, diffuse: 0.45, specular: 0.05, fresnel: 0.0};
+  const light = {ambient: 1, diffuse: 0, specular: 0};  // colours are numbers, which shade would change
   turning.models.forEach((model, number) => {
     const scene = number ? `scene${number + 1}` : "scene";
     model.rods.forEach((part, at) => {
@@ -86,7 +86,7 @@
       const column = (first) => Array.from(corners).filter((_, at) => at % 3 === first);
       add("pressure", {
         type: "mesh3d", scene, x: found.x, y: found.y, z: found.z, i: column(0), j: column(1), k: column(2),
-        intensity: found.value, coloraxis: "coloraxis2", lighting: {ambient: 1, diffuse: 0, specular: 0},
+        intensity: found.value, coloraxis: "coloraxis2", lighting: light,
         hoverinfo: "all", customdata: found.value, hovertemplate: "%{customdata:.4g} MPa<extra></extra>",
       });
     }
