@@ -28,8 +28,8 @@ from cases.scene import (
 )
 from reports.formatting import gap, opposite
 from reports.geometry import contact_limits, stations_of_points
+from reports.pages.case import _sketch_caption
 from reports.quantities import Quantities, evaluate
-from reports.site import _sketch_caption
 from reports.sketch import scene_sketch
 from reports.view import SPRINGS, drawn_shifts
 from rodmodel import solve
