@@ -20,6 +20,9 @@ Face = Literal["top", "bottom", "left", "right"]
 ENDS: tuple[End, ...] = ("start", "end")
 FACES: tuple[Face, ...] = ("top", "bottom", "left", "right")
 
+# Width and height of a section as parts of its rod's length: no rod has less, but a slip of the pen has.
+THINNEST = 1e-6
+
 # The length of a curved or inclined rod is written down with finitely many digits.
 ROUNDED = 1e-4
 
@@ -58,6 +61,11 @@ class Rod:
             borders = _on_piece_borders(borders, self.centre_line)
         object.__setattr__(self, "element_borders", borders)
         _require_roomy(self.centre_line, self.section, f"rods.{self.name}.centre_line")
+        for what, axis in (("wide", np.array([1.0, 0.0])), ("high", np.array([0.0, 1.0]))):
+            extent = section_reach(self.section, axis) + section_reach(self.section, -axis)
+            found = f"one {extent:.3g} mm {what} on a rod {length:.3g} mm long"
+            remedy = "a section is at least a millionth of its rod's length"
+            require(extent >= THINNEST * length, f"rods.{self.name}.section", found, remedy)
 
     @property
     def length(self) -> float:

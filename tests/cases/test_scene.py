@@ -547,3 +547,24 @@ def test_an_unknown_name_is_a_key_error():
         scene().rod("nobody")
     with pytest.raises(KeyError):
         scene().contact("nothing")
+
+
+@pytest.mark.parametrize(
+    ("section", "fits"),
+    [
+        (Rectangle(1e-3, 1e-3), True),
+        (Rectangle(1e-9, 1.0), False),
+        (Rectangle(1.0, 5e-324), False),
+        (Circle(1e-9), False),
+    ],
+)
+def test_a_section_of_next_to_nothing_is_refused(section, fits):
+    def rod():
+        line = Line((0.0, 0.0, 0.0), (100.0, 0.0, 0.0), (0.0, 1.0, 0.0))
+        return Rod("wire", line, section, Material(200e3, 0.3), (0.0, 100.0))
+
+    if fits:
+        assert rod().length == 100.0
+    else:
+        with pytest.raises(SceneError, match=r"rods.wire.section: found one .* a millionth of its rod's length"):
+            rod()
