@@ -33,7 +33,7 @@
         start += count;
       }
     }
-    const cap = numbers(skin.cap, Uint16Array);
+    const cap = numbers(skin.cap, Uint32Array);
     for (const first of [0, (skin.sections - 1) * around]) {
       for (let at = 0; at < cap.length; at += 3) {
         i.push(first + cap[at]); j.push(first + cap[at + 1]); k.push(first + cap[at + 2]);
@@ -82,7 +82,7 @@
       });
     });
     for (const part of model.faces) {
-      const found = points(part), corners = numbers(part.triangles, Uint16Array);
+      const found = points(part), corners = numbers(part.triangles, Uint32Array);
       const column = (first) => Array.from(corners).filter((_, at) => at % 3 === first);
       add("pressure", {
         type: "mesh3d", scene, x: found.x, y: found.y, z: found.z, i: column(0), j: column(1), k: column(2),

@@ -66,7 +66,7 @@ def turning_part(run: CaseRun) -> dict[str, Any] | None:
                 "name": rod.name,
                 "sections": len(found.station),
                 "loops": found.loops,
-                "cap": _text(found.cap, "<u2"),
+                "cap": _text(found.cap, "<u4"),
                 "corners": found.corners.tolist(),
             }
             for rod, found in zip(scene.rods, skins, strict=True)
@@ -76,7 +76,7 @@ def turning_part(run: CaseRun) -> dict[str, Any] | None:
                 "name": name,
                 "rods": [packed(part) for part in parts["rods"]],
                 "faces": [
-                    packed(part) | {"triangles": _text(part["triangles"], "<u2")}
+                    packed(part) | {"triangles": _text(part["triangles"], "<u4")}
                     for part in parts["faces"]
                     if part["triangles"].size
                 ],
