@@ -15,8 +15,14 @@ _Array = NDArray[np.float64]
 
 # Every edge is held against every other: 1000 corners take 0.2 s and 100 MB.
 MOST_CORNERS = 1000
-# Thickness of any part of a polygon, as a part of its size: thinner ones are slips of the pen.
-THINNEST = 1e-6
+# Thickness of a section and of any part of it, as a part of its size: thinner ones are slips of the pen.
+THINNEST = 1e-5
+
+
+def _require_thick(key: str, thickness: float, size: float) -> None:
+    """See that a part is not so thin that it is none for whoever meshes or integrates the section."""
+    remedy = f"more than {THINNEST:g} of the section's {size:g} mm is needed"
+    require(thickness > THINNEST * size, key, f"a part that is {thickness:.3g} mm thick", remedy)
 
 
 @dataclass(frozen=True)
@@ -35,6 +41,8 @@ class Rectangle:
     def __post_init__(self) -> None:
         require_positive(self.width, "width", "a width")
         require_positive(self.height, "height", "a height")
+        key = "width" if self.width < self.height else "height"
+        _require_thick(key, min(self.width, self.height), max(self.width, self.height))
 
 
 @dataclass(frozen=True)
@@ -69,6 +77,7 @@ class Ring:
         ok = math.isfinite(self.outer_diameter) and self.outer_diameter > self.inner_diameter
         remedy = f"the outer diameter must be larger than the inner one, {self.inner_diameter:g} mm"
         require(ok, "outer_diameter", f"{self.outer_diameter:g}", remedy)
+        _require_thick("inner_diameter", 0.5 * (self.outer_diameter - self.inner_diameter), self.outer_diameter)
 
 
 @dataclass(frozen=True)
@@ -91,6 +100,7 @@ class Box:
         require_positive(self.wall, "wall", "a wall thickness")
         ok = 2.0 * self.wall < min(self.width, self.height)
         require(ok, "wall", f"{self.wall:g}", "the wall must be thinner than half the smaller side")
+        _require_thick("wall", self.wall, max(self.width, self.height))
 
 
 @dataclass(frozen=True)
@@ -118,22 +128,17 @@ class Polygon:
             remedy = "name the corners in order around the section"
             require(not crosses_itself(corners), key, "edges that cross or touch each other", remedy)
             require(signed_area(corners) != 0.0, key, "corners along one line", remedy)
-            self._require_thick(key, narrowest(corners))
+            size = float(np.ptp(np.array(self.outer), axis=0).max())
+            _require_thick(key, narrowest(corners), size)
         for index, (key, hole) in enumerate(loops[1:]):
             inside = depth(self.outer, hole[0]) > 0.0 and not edges_meet(self.outer, hole).any()
             require(inside, key, "corners on or beyond the outer edges", "a hole lies within the section")
-            self._require_thick(key, narrowest(self.outer, hole))
+            _require_thick(key, narrowest(self.outer, hole), size)
             for other in self.holes[:index]:
                 apart = not edges_meet(other, hole).any()
                 apart = apart and depth(other, hole[0]) < 0.0 and depth(hole, other[0]) < 0.0
                 require(apart, key, "corners within another hole", "holes lie apart from each other")
-                self._require_thick(key, narrowest(other, hole))
-
-    def _require_thick(self, key: str, thickness: float) -> None:
-        """See that no part is so thin that it is none for whoever meshes or integrates the section."""
-        size = float(np.ptp(np.array(self.outer), axis=0).max())
-        found = f"a part that is {thickness:.3g} mm thick"
-        require(thickness > THINNEST * size, key, found, f"more than {THINNEST:g} of the section's size is needed")
+                _require_thick(key, narrowest(other, hole), size)
 
     @property
     def centroid(self) -> tuple[float, float]:

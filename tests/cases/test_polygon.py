@@ -67,5 +67,5 @@ def test_the_narrowest_place_between_two_polygons_is_found_from_either():
     ],
 )
 def test_a_section_with_a_part_of_no_thickness_is_refused(outer, holes, key):
-    with pytest.raises(SceneError, match=f"{key}: found a part that is .* mm thick; more than 1e-06 of the section"):
+    with pytest.raises(SceneError, match=f"{key}: found a part that is .* mm thick; more than 1e-05 of the section"):
         Polygon(outer, holes)
