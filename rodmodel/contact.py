@@ -22,12 +22,13 @@ IntArray = NDArray[np.int64]
 
 # Steps of the multipliers, and the energy left in the springs, as a share of the rods', at which they have settled.
 MOST_STEPS, SETTLED = 100, 1e-13
-# They end, too, where little is left and a step leaves most of it: the rods cannot close that.
+# They end, too, where little is left and a step leaves most of it, however stiff the springs: rods cannot close that.
 LITTLE, MOST = 1e-6, 0.9
 # Energy that may be left where the steps have run out.
 ACCEPTED = 1e-5
-# By how much springs are made stiffer where steps leave most of the penetration time and again, and how often.
-STIFFENED, MOST_STIFFENED = 10.0, 4
+# By how much springs are made stiffer where steps leave most of the penetration, and how often; only those of points
+# with this part of the largest penetration, as stiff springs at all points leave equations that round-off spoils.
+STIFFENED, MOST_STIFFENED, CREEPING = 10.0, 4, 0.1
 # Part of what is out of balance that a step may leave, or loose rods hang on softer springs; and how often they may.
 SWAYING, MOST_SOFTENED = 0.5, 2
 # How often points that are wrong about a set may change sides; how often in a row all of them may where that leaves no
@@ -179,7 +180,10 @@ def unilateral_contact(problem: ContactProblem, settled: bool = True, guess: Boo
     slow = stiffened = swaying = softened = 0
     for _ in range(MOST_STEPS):
         hung = problem.gap + problem.motion @ (motion + flexibility @ problem.motion_load)
-        found = pushing.closing(hung - multiplier / problem.spring)
+        try:
+            found = pushing.closing(hung - multiplier / problem.spring)
+        except np.linalg.LinAlgError:  # springs too stiff for the digits that numbers have
+            found = None
         if found is None:
             outcome = "stagnated: no set of contact points serves"
             break
@@ -192,15 +196,18 @@ def unilateral_contact(problem: ContactProblem, settled: bool = True, guess: Boo
         size = max(size, (np.abs(problem.motion.T) @ force).max(initial=0.0))
         balance_before, balance = balance, float(np.abs(unbalanced).max(initial=0.0))
         left_before, left = left, _energy_left(problem, multiplier, before)
+        crept = stiffened < MOST_STIFFENED and SETTLED < left <= LITTLE and left > MOST * left_before
         if balance <= (BALANCED if settled else ROUGHLY_BALANCED) * size and (
-            not settled or _is_settled(left, left_before)
+            not settled or (_is_settled(left, left_before) and not crept)
         ):
             outcome = "converged"
             break
         slow = slow + 1 if left > MOST * left_before else 0
-        if slow > PATIENCE and stiffened < MOST_STIFFENED:
+        if (slow > PATIENCE and stiffened < MOST_STIFFENED) or crept:
             # Points next to which nothing yields, as at a clamp: their springs must be stiffer still.
-            problem = replace(problem, spring=np.where(problem.rigid, STIFFENED * problem.spring, problem.spring))
+            penetrated = np.abs(multiplier - before) / problem.spring
+            creeping = problem.rigid & (penetrated > CREEPING * penetrated.max())
+            problem = replace(problem, spring=np.where(creeping, STIFFENED * problem.spring, problem.spring))
             pushing = PushingForces(_with_springs(hanging, problem), pushing.active, pushing.active_sets)
             slow, stiffened, tried = 0, stiffened + 1, np.empty(0, dtype=bool)
         swaying = swaying + 1 if balance > SWAYING * balance_before else 0

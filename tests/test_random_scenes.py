@@ -19,7 +19,7 @@ from tests.random_scenes import random_scene
 
 SCENES = int(os.environ.get("RANDOM_SCENES", "16"))
 # Penetration that a solution may leave, as a share of the largest displacement: a corner's, where pressure is singular.
-PENETRATION = 2e-3
+PENETRATION = 1e-3
 # Unbalanced force, as a share of the largest.
 UNBALANCED = 1e-8
 
