@@ -42,6 +42,7 @@ from cases.scene import (
     Support,
 )
 from cases.schema import CaseFile
+from cases.sections import thinnest
 from cases.tables.centre_lines import (
     ArcTable,
     CentreLineTable,
@@ -66,6 +67,9 @@ from cases.tables.sections import BoxTable, CircleTable, PolygonTable, Rectangle
 from cases.tables.supports import ClampTable, MeanSupportTable, SectionSupportTable, SupportTable
 from cases.units import UnitError, to_unit
 from cases.wording import listed, nearest, shown
+
+# Thickness of any part of a section as a part of its size. The rod model alone could do with less.
+THINNEST = 1e-5
 
 
 def require_found(condition: bool, key: str, found: object, remedy: str) -> None:
@@ -160,6 +164,7 @@ def _rods(file: CaseFile) -> tuple[Rod, ...]:
     for key, section in file.sections.items():
         with _inside(f"sections.{key}"):
             sections[key] = _section(section)
+            _require_thick(sections[key])
     for key, rod in file.rods.items():
         require_known(rod.section, sections, f"rods.{key}.section", "sections")
         require_known(rod.material, materials, f"rods.{key}.material", "materials")
@@ -189,6 +194,14 @@ def _section(table: SectionTable) -> Section:
             return Box(table.width, table.height, table.wall)
         case PolygonTable():
             return Polygon(table.outer, table.holes)
+
+
+def _require_thick(section: Section) -> None:
+    """See that no part of a section is so thin that 3D, which meshes it, would take it for none, or never end."""
+    key, thickness, size = thinnest(section)
+    remedy = f"more than {THINNEST:g} of the section's {size:g} mm is needed"
+    if not thickness > THINNEST * size:
+        raise SceneError(key, f"a part that is {thickness:.3g} mm thick", remedy)
 
 
 def _centre_line(table: CentreLineTable) -> CentreLine:

@@ -15,14 +15,6 @@ _Array = NDArray[np.float64]
 
 # Every edge is held against every other: 1000 corners take 0.2 s and 100 MB.
 MOST_CORNERS = 1000
-# Thickness of a section and of any part of it, as a part of its size: thinner ones are slips of the pen.
-THINNEST = 1e-5
-
-
-def _require_thick(key: str, thickness: float, size: float) -> None:
-    """See that a part is not so thin that it is none for whoever meshes or integrates the section."""
-    remedy = f"more than {THINNEST:g} of the section's {size:g} mm is needed"
-    require(thickness > THINNEST * size, key, f"a part that is {thickness:.3g} mm thick", remedy)
 
 
 @dataclass(frozen=True)
@@ -41,8 +33,6 @@ class Rectangle:
     def __post_init__(self) -> None:
         require_positive(self.width, "width", "a width")
         require_positive(self.height, "height", "a height")
-        key = "width" if self.width < self.height else "height"
-        _require_thick(key, min(self.width, self.height), max(self.width, self.height))
 
 
 @dataclass(frozen=True)
@@ -77,7 +67,6 @@ class Ring:
         ok = math.isfinite(self.outer_diameter) and self.outer_diameter > self.inner_diameter
         remedy = f"the outer diameter must be larger than the inner one, {self.inner_diameter:g} mm"
         require(ok, "outer_diameter", f"{self.outer_diameter:g}", remedy)
-        _require_thick("inner_diameter", 0.5 * (self.outer_diameter - self.inner_diameter), self.outer_diameter)
 
 
 @dataclass(frozen=True)
@@ -100,7 +89,6 @@ class Box:
         require_positive(self.wall, "wall", "a wall thickness")
         ok = 2.0 * self.wall < min(self.width, self.height)
         require(ok, "wall", f"{self.wall:g}", "the wall must be thinner than half the smaller side")
-        _require_thick("wall", self.wall, max(self.width, self.height))
 
 
 @dataclass(frozen=True)
@@ -128,17 +116,13 @@ class Polygon:
             remedy = "name the corners in order around the section"
             require(not crosses_itself(corners), key, "edges that cross or touch each other", remedy)
             require(signed_area(corners) != 0.0, key, "corners along one line", remedy)
-            size = float(np.ptp(np.array(self.outer), axis=0).max())
-            _require_thick(key, narrowest(corners), size)
         for index, (key, hole) in enumerate(loops[1:]):
             inside = depth(self.outer, hole[0]) > 0.0 and not edges_meet(self.outer, hole).any()
             require(inside, key, "corners on or beyond the outer edges", "a hole lies within the section")
-            _require_thick(key, narrowest(self.outer, hole), size)
             for other in self.holes[:index]:
                 apart = not edges_meet(other, hole).any()
                 apart = apart and depth(other, hole[0]) < 0.0 and depth(hole, other[0]) < 0.0
                 require(apart, key, "corners within another hole", "holes lie apart from each other")
-                _require_thick(key, narrowest(other, hole), size)
 
     @property
     def centroid(self) -> tuple[float, float]:
@@ -161,3 +145,27 @@ def section_reach(section: Section, direction: _Array) -> float:
             return float(np.max((np.array(section.outer) - section.centroid) @ direction))
         case Rectangle() | Box():
             return float(np.abs(direction) @ (section.width, section.height)) / 2.0
+
+
+def thinnest(section: Section) -> tuple[str, float, float]:
+    """Key and thickness of the thinnest part of a section, and the section's size, mm."""
+    match section:
+        case Rectangle():
+            key = "width" if section.width < section.height else "height"
+            return key, min(section.width, section.height), max(section.width, section.height)
+        case Circle():
+            return "diameter", section.diameter, section.diameter
+        case Ring():
+            wall = 0.5 * (section.outer_diameter - section.inner_diameter)
+            return "inner_diameter", wall, section.outer_diameter
+        case Box():
+            return "wall", section.wall, max(section.width, section.height)
+        case Polygon():
+            loops = (section.outer, *section.holes)
+            keys = ["outer", *(f"holes #{number}" for number in range(1, len(loops)))]
+            parts = [(narrowest(loop), key) for loop, key in zip(loops, keys, strict=True)]
+            parts += [
+                (narrowest(loop, other), keys[index]) for index, loop in enumerate(loops) for other in loops[:index]
+            ]
+            thickness, key = min(parts)
+            return key, thickness, float(np.ptp(np.array(section.outer), axis=0).max())

@@ -540,6 +540,16 @@ MISTAKES_ANYWHERE = [
     ),
     ("joint as one table", [("[[joints]]", "[joints]")], "joints", "a table", "one [[joints]] for each"),
     # beds
+    ("wall like foil", [('wall = "2 mm"', 'wall = "2e-5 mm"')], "sections.hollow.wall", "2e-05 mm thick", "1e-05 of"),
+    ("tube like foil", [("_diameter = 8", "_diameter = 9.9999")], "sections.tube.inner_diameter", "thick", "1e-05 of"),
+    ("flat as paper", [('height = "2 cm"', "height = 1e9")], "sections.square.width", "20 mm thick", "1e-05 of"),
+    (
+        "pinched",
+        [("[9, 0], [0, 9]", "[9, 0], [9, 3], [3, 3], [3, 1e-30], [0, 9]")],
+        "sections.angle.",
+        "thick",
+        "1e-05",
+    ),
     ("bed on a wire", [('"beam", face = "b', '"spring", face = "b')], "beds #1.face.rod", "a circle", "flat faces"),
     (
         "bed of nothing",

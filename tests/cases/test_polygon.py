@@ -3,7 +3,6 @@
 import pytest
 
 from cases.polygon import centroid, crosses_itself, depth, narrowest, signed_area
-from cases.scene import Polygon, SceneError
 
 L_SHAPE = ((0.0, 0.0), (3.0, 0.0), (3.0, 1.0), (1.0, 1.0), (1.0, 3.0), (0.0, 3.0))
 
@@ -57,15 +56,3 @@ def test_the_narrowest_place_between_two_polygons_is_found_from_either():
     square, beside = ((0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)), ((1.25, 0.5), (3.0, 0.0), (3.0, 1.0))
 
     assert narrowest(square, beside) == narrowest(beside, square) == 0.25
-
-
-@pytest.mark.parametrize(
-    ("outer", "holes", "key"),
-    [
-        (((0.0, 0.0), (20.0, 0.0), (20.0, 6.0), (6.0, 6.0), (6.0, 1e-30), (0.0, 20.0)), (), "outer"),
-        (((0.0, 0.0), (9.0, 0.0), (0.0, 9.0)), (((1.0, 1e-7), (2.0, 1.0), (1.0, 2.0)),), "holes #1"),
-    ],
-)
-def test_a_section_with_a_part_of_no_thickness_is_refused(outer, holes, key):
-    with pytest.raises(SceneError, match=f"{key}: found a part that is .* mm thick; more than 1e-05 of the section"):
-        Polygon(outer, holes)

@@ -567,19 +567,3 @@ def test_a_section_of_next_to_nothing_is_refused(section, fits):
     else:
         with pytest.raises(SceneError, match=r"rods.wire.section: found one .* a millionth of its rod's length"):
             rod()
-
-
-@pytest.mark.parametrize(
-    ("make", "arguments", "key"),
-    [
-        (Rectangle, (8.0, 2147483648.0), "width"),
-        (Rectangle, (1.0, 5e-324), "height"),
-        (Box, (10.0, 20.0, 1e-5), "wall"),
-        (Ring, (10.0, 9.9999), "inner_diameter"),
-    ],
-)
-def test_a_wall_of_next_to_nothing_is_refused(make, arguments, key):
-    error = refusal(make, *arguments)
-
-    assert error.key == key
-    assert "mm thick" in error.found
