@@ -33,6 +33,8 @@ END_ON = 0.3
 FARTHEST = 40.0
 # A rod that is seen slimmer than this has its name beside it.
 LEAST_FOR_NAME = 11.0
+# Half the height of a letter.
+HALF_LETTER = 3.0
 # Places nearer to each other than this have one tick.
 ONE_TICK = 1.5
 # Rows of numbers below the axis.
@@ -57,7 +59,7 @@ class _Band:
         return np.hstack([self.centre + self.right * self.normal, (self.centre + self.left * self.normal)[:, ::-1]])
 
     def covers(self, place: Array, margin: float = 0.0) -> bool:
-        """Whether a place, shape (2,), lies within the band or nearer to it than a margin."""
+        """Whether a place, shape (2,), lies within the band made broader by a margin all around."""
         corners = tuple((float(x), float(y)) for x, y in self.border.T)
         return depth(corners, (float(place[0]), float(place[1]))) > -margin
 
@@ -110,7 +112,7 @@ def _named(rod: Rod) -> str:
     """A rod's name and its modulus along the rod."""
     material = rod.material
     modulus = material.young_modulus if isinstance(material, Material) else material.young_moduli[2]
-    return f"{rod.name}, E = {modulus / 1000.0:g} GPa"
+    return f"{rod.name}, E = {modulus / 1000.0:.4g} GPa"
 
 
 def _described(rod: Rod) -> str:
@@ -156,8 +158,13 @@ def _place_of_name(band: _Band, half: float) -> tuple[Array, float]:
         quarter = band.centre[:, band.centre.shape[1] // 4]  # loads and zones are often in the middle
         return quarter + (0.5 * abs(left - right) + 6.0) * across, angle
     place = centre + 0.5 * (left + right) * band.normal[:, middle]
-    inside = all(band.covers(place + end * along) for end in (-half, half))
-    return (place, angle) if inside or abs(along[0]) < 0.1 else (band.border.mean(axis=1), 0.0)
+    inside = all(band.covers(place + end * along, -HALF_LETTER) for end in (-half, half))
+    if inside or abs(along[0]) < 0.1:
+        return place, angle
+    between_ends = 0.5 * (band.centre[:, 0] + band.centre[:, -1])
+    parts = between_ends + np.outer((-half, 0.0, half), (1.0, 0.0))
+    clear = not any(band.covers(part, HALF_LETTER) for part in parts)
+    return between_ends if clear else band.border.mean(axis=1), 0.0
 
 
 def _zones(scene: Scene, quantities: Quantities, plane: Array) -> list[str]:
