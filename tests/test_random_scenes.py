@@ -17,7 +17,7 @@ from cases.scene import Box, Ground, Material, Rectangle, Rod, SceneError
 from reports.quantities import evaluate
 from tests.random_scenes import random_scene
 
-SCENES = int(os.environ.get("RANDOM_SCENES", "16"))
+SCENES = int(os.environ.get("RANDOM_SCENES", "24"))
 # Penetration that a solution may leave, as a share of the largest displacement: a corner's, where pressure is singular.
 PENETRATION = 1e-3
 # Unbalanced force, as a share of the largest.

@@ -23,9 +23,11 @@ from reports.verification.registry import CHECKS, GROUPS
 
 ALL = [check for group in GROUPS for check in group.checks]
 # 3D on several or on fine meshes
-LONG = {check.name for group in (solid.GROUP, *solid_elements.GROUPS[1:], *contact_3d.GROUPS) for check in group.checks}
-# These take half a minute: nightly runs hold them, and `rodcheck verify`, which ends with 1 where one falls.
-AT_NIGHT = {check.name for check in bands.GROUP.checks} | {"Helical spring, square wire, against 3D"}
+LONG = {
+    check.name
+    for group in (solid.GROUP, *solid_elements.GROUPS[1:], *contact_3d.GROUPS, bands.GROUP)
+    for check in group.checks
+}
 
 
 def outcome_at_its_level(check: Check) -> Outcome:
@@ -35,12 +37,7 @@ def outcome_at_its_level(check: Check) -> Outcome:
 
 
 @pytest.mark.parametrize(
-    "check",
-    [
-        pytest.param(each, id=each.name, marks=[pytest.mark.slow] * (each.name in LONG))
-        for each in ALL
-        if each.name not in AT_NIGHT
-    ],
+    "check", [pytest.param(each, id=each.name, marks=[pytest.mark.slow] * (each.name in LONG)) for each in ALL]
 )
 def test_every_model_meets_the_tolerance_at_the_level_that_counts(check: Check) -> None:
     outcome = outcome_at_its_level(check)
@@ -50,7 +47,6 @@ def test_every_model_meets_the_tolerance_at_the_level_that_counts(check: Check) 
 
 def test_names_are_unique_and_the_level_that_counts_is_tried() -> None:
     assert len(CHECKS) == len(ALL)
-    assert set(CHECKS) > AT_NIGHT
     assert all(check.at_level in check.levels for check in ALL)
 
 
