@@ -23,8 +23,7 @@ def write_choices(charts: Sequence[Chart], output: Path) -> Path:
         if the folder or a file cannot be written.
     """
     found = choices(charts)
-    without = [(chart.title, " ".join(chart.notes)) for chart in charts if not chart.points]
-    content = {"headings": HEADINGS, "rows": rows(found), "summary": summary(found), "without": without}
+    content = {"headings": HEADINGS, "rows": rows(found), "summary": summary(found), "without": _without(charts)}
     numbers = [
         {
             "case": choice.case,
@@ -73,5 +72,12 @@ def print_choices(charts: Sequence[Chart]) -> None:
     for choice in found:
         for clause in choice.shortcomings:
             console.print(escape(f"{choice.case}, {100.0 * choice.tolerance:g} %: {clause}"))
+    for title, reason in _without(charts):
+        console.print(escape(f"{title}: {reason}"))
     for sentence in summary(found):
         console.print(escape(sentence))
+
+
+def _without(charts: Sequence[Chart]) -> list[tuple[str, str]]:
+    """Titles of cases without a choice, and why there is none."""
+    return [(chart.title, " ".join(chart.notes)) for chart in charts if not choices([chart])]

@@ -108,6 +108,7 @@ def test_the_page_names_cases_escaped_and_its_numbers_stand_beside_it(
     assert [entry["tolerance"] for entry in numbers] == [0.01, 0.001, 0.0002]
     shown = capsys.readouterr().out
     assert "2.5 times the seconds of the cheapest" in shown
+    assert "Knotted: There is no chart" in shown
 
 
 def test_a_chart_of_one_case_has_its_own_rows(chosen: Chart, case_run: CaseRun, tmp_path: Path) -> None:
