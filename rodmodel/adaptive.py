@@ -162,7 +162,7 @@ def solve_to(scene: Scene, tolerance: float) -> AdaptiveSolution:
         else:
             contact = moved_contact(scene, meshes, stretches, system_on, edge_share=edge_share)
         solution = solution_of(scene, contact, begin, begin)
-        stretches = snapped(scene, solution.stretches)
+        stretches = on_zone_ends(scene, solution.stretches)
         meshes = {name: _mesh_of(solution, name) for name in meshes}
         seen = look_at(solution)
         unknowns, found = solution.cost.unknowns, goals(solution)
@@ -291,7 +291,7 @@ def _is_more(raised: Mapping[str, RodMesh], meshes: Mapping[str, RodMesh]) -> bo
     )
 
 
-def snapped(scene: Scene, stretches: Sequence[Stretch]) -> tuple[Stretch, ...]:
+def on_zone_ends(scene: Scene, stretches: Sequence[Stretch]) -> tuple[Stretch, ...]:
     """The stretches, ends next to those of their zone set to these: low levels leave points in corners open.
 
     Where that is wrong, the search for the edges says so, as contact then pulls there.
