@@ -105,8 +105,8 @@ class PublishedTable(Table):
     """A value printed in a source, as printed."""
 
     quantity: Quantity
-    """Name of the quantity; not bending_moment and stress_s, which no number states; of the deflection, one component at
-    a place."""
+    """Name of the quantity; not bending_moment and stress_s, which no number states; of the deflection, one component
+    at a place."""
     rod: Text | None = None
     """Name of one of the [rods], for a quantity of a rod."""
     contact: Text | None = None
