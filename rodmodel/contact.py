@@ -29,6 +29,8 @@ ACCEPTED = 1e-5
 # By how much springs are made stiffer where steps leave most of the penetration, and how often; only those of points
 # with this part of the largest penetration, as stiff springs at all points leave equations that round-off spoils.
 STIFFENED, MOST_STIFFENED, CREEPING = 10.0, 4, 0.1
+# The part of the largest penetration on the way that may be kept while springs can still be made stiffer.
+KEPT = 1e-2
 # Part of what is out of balance that a step may leave, or loose rods hang on softer springs; and how often they may.
 SWAYING, MOST_SOFTENED = 0.5, 2
 # How often points that are wrong about a set may change sides; how often in a row all of them may where that leaves no
@@ -38,8 +40,9 @@ MOST_EXCHANGES, PATIENCE, FEWER = 60, 3, 3
 NO_STIFFNESS = 1e-15
 # How far loose rods move on their springs, as a multiple of what they deform.
 SOFT = 1e2
-# Forces, gaps and unbalanced loads this small against the largest may be round-off.
-ROUND_OFF = 1e-9
+# Forces, gaps and unbalanced loads this small against the largest may be round-off; of gaps under given forces, in
+# which loose rods on their springs are far away, much less is.
+ROUND_OFF, LEAST_GAP = 1e-9, 1e-11
 # Share of a load that contact may leave unbalanced on a loose rod: in the end, and where it only tells about where.
 BALANCED, ROUGHLY_BALANCED = 1e-10, 1e-3
 
@@ -173,7 +176,7 @@ def unilateral_contact(problem: ContactProblem, settled: bool = True, guess: Boo
     flexibility = _soft_springs(problem)
     hanging = _hanging(problem, flexibility)
     pushing = PushingForces(_with_springs(hanging, problem), guess)
-    multiplier, left = force, np.inf
+    multiplier, left, first = force, np.inf, 0.0
     outcome, balance = "stagnated: the multipliers did not settle", 0.0
     largest, size = 0.0, float(np.abs(problem.motion_load).max(initial=0.0)) or _closing_force(problem)
     active = tried = np.empty(0, dtype=bool)
@@ -196,7 +199,11 @@ def unilateral_contact(problem: ContactProblem, settled: bool = True, guess: Boo
         size = max(size, (np.abs(problem.motion.T) @ force).max(initial=0.0))
         balance_before, balance = balance, float(np.abs(unbalanced).max(initial=0.0))
         left_before, left = left, _energy_left(problem, multiplier, before)
-        crept = stiffened < MOST_STIFFENED and SETTLED < left <= LITTLE and left > MOST * left_before
+        penetrated = np.where(problem.rigid, np.abs(multiplier - before) / problem.spring, 0.0)
+        first = max(first, float(penetrated.max(initial=0.0)))
+        crept = (
+            stiffened < MOST_STIFFENED and _is_settled(left, left_before) and penetrated.max(initial=0.0) > KEPT * first
+        )
         if balance <= (BALANCED if settled else ROUGHLY_BALANCED) * size and (
             not settled or (_is_settled(left, left_before) and not crept)
         ):
@@ -205,8 +212,7 @@ def unilateral_contact(problem: ContactProblem, settled: bool = True, guess: Boo
         slow = slow + 1 if left > MOST * left_before else 0
         if (slow > PATIENCE and stiffened < MOST_STIFFENED) or crept:
             # Points next to which nothing yields, as at a clamp: their springs must be stiffer still.
-            penetrated = np.abs(multiplier - before) / problem.spring
-            creeping = problem.rigid & (penetrated > CREEPING * penetrated.max())
+            creeping = penetrated > CREEPING * penetrated.max()
             problem = replace(problem, spring=np.where(creeping, STIFFENED * problem.spring, problem.spring))
             pushing = PushingForces(_with_springs(hanging, problem), pushing.active, pushing.active_sets)
             slow, stiffened, tried = 0, stiffened + 1, np.empty(0, dtype=bool)
@@ -351,8 +357,8 @@ class PushingForces:
         opening = gap + self._matrix @ force
         pulling = -force / (np.abs(force).max(initial=0.0) or 1.0)
         closing = -opening / (np.abs(gap).max(initial=0.0) or 1.0)
-        wrong = np.where(self._active, pulling, closing)
-        number = np.flatnonzero(wrong > ROUND_OFF)
+        wrong = np.where(self._active, pulling / ROUND_OFF, closing / LEAST_GAP)
+        number = np.flatnonzero(wrong > 1.0)
         return force, number[np.argsort(-wrong[number], kind="stable")]
 
     def _least_squares(self, gap: Array) -> Array:
