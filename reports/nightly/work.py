@@ -113,7 +113,8 @@ def _answer(process: subprocess.Popen[bytes], task: Task, wanted: Callable[[], b
             if waiting.select(INTERVAL):
                 part = os.read(process.stdout.fileno(), 1 << 20)
                 if not part:
-                    process.wait()
+                    # Not reaped yet: until its group is ended, no other process may get its number.
+                    os.waitid(os.P_PID, process.pid, os.WEXITED | os.WNOWAIT)
                     return b"".join(parts), ""
                 parts.append(part)
             if not wanted():
