@@ -53,7 +53,8 @@ def run_tasks(
     ClusterError
         if the scheduler cannot be reached, has no workers or goes away.
     """
-    for logger in ("distributed", "distributed.client"):  # Dask gives the second a level of its own
+    # Dask gives the second a level of its own; the third is told of what Dask does not wait for at its end.
+    for logger in ("distributed", "distributed.client", "asyncio"):
         logging.getLogger(logger).setLevel(logging.CRITICAL)  # what matters is told by us, once
     with _client(scheduler) as client:
         at_once = _at_once(client)
