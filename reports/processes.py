@@ -44,17 +44,18 @@ def in_own_process(
     sender.close()
     try:
         while True:
-            kind, content = receiver.recv()
+            try:
+                kind, content = receiver.recv()
+            except (EOFError, OSError):  # the latter where it ended in the middle of a message
+                process.join()
+                killed = " (killed, perhaps for lack of memory)" if process.exitcode == -signal.SIGKILL else ""
+                raise ProcessFailed(f"its process ended early with exit code {process.exitcode}{killed}") from None
             if kind == "done":
                 found: Found = content
                 return found
             if kind == "failed":
                 raise ProcessFailed(content)
             progress(content)
-    except EOFError:
-        process.join()
-        killed = " (killed, perhaps for lack of memory)" if process.exitcode == -signal.SIGKILL else ""
-        raise ProcessFailed(f"its process ended early with exit code {process.exitcode}{killed}") from None
     finally:
         receiver.close()
         if process.is_alive():

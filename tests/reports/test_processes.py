@@ -16,6 +16,7 @@ from reports.runner import Failure, run_cases
 
 WORK = """
 import os
+from multiprocessing.connection import Connection
 
 def double(number, progress):
     progress("halfway")
@@ -29,6 +30,16 @@ def die(number, progress):
 
 def killed(number, progress):
     os.kill(os.getpid(), 9)
+
+def killed_in_the_middle_of_a_message(number, progress):
+    whole = Connection._send
+
+    def half(connection, message):
+        whole(connection, message[: len(message) // 2])
+        killed(number, progress)
+
+    Connection._send = half
+    progress("halfway")
 """
 
 
@@ -63,9 +74,10 @@ def test_a_process_that_ends_is_a_failure_and_not_a_wait(work: ModuleType) -> No
         in_own_process(work.die, 0)
 
 
-def test_a_killed_process_says_so(work: ModuleType) -> None:
+@pytest.mark.parametrize("when", ["killed", "killed_in_the_middle_of_a_message"])
+def test_a_killed_process_says_so(work: ModuleType, when: str) -> None:
     with pytest.raises(ProcessFailed, match="killed"):
-        in_own_process(work.killed, 0)
+        in_own_process(getattr(work, when), 0)
 
 
 @pytest.mark.slow
