@@ -7,7 +7,6 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
-from rich.console import Console
 from rich.table import Table
 
 from cases.case import Case
@@ -18,7 +17,7 @@ from reports.quantities import evaluate
 from reports.result import Choice, ElementChoice, GoalEstimate, StepCost
 from reports.runner import Run
 from reports.solution import Solution
-from reports.tables import WIDTH as TABLE_WIDTH
+from reports.tables import console
 from rodmodel.adaptive import AdaptiveSolution, solve_to
 from rodmodel.indicators import indicators, pressed_elements
 
@@ -131,8 +130,7 @@ def choice_result(found: AdaptiveSolution) -> Choice:
 
 def print_choice(found: AdaptiveSolution) -> None:
     """Print how sure the rod model is of what it found, and its levels along the rods."""
-    out = Console(highlight=False)
-    out = out if out.is_terminal else Console(highlight=False, width=TABLE_WIDTH)
+    out = console()
     table = Table("quantity", "of", "value", "estimated error", "relative")
     for each in found.estimates:
         edge = each.goal.kind == "contact edge"

@@ -43,6 +43,21 @@ def grades(level_or_order: Grades | None) -> str:
     return f"{min(each)}" if min(each) == max(each) else f"{min(each)} to {max(each)}"
 
 
+def rod_model(level: Grades | None, order: Grades | None) -> str:
+    """The rod model by name, with its level and order."""
+    return f"rod model h{grades(level)}, p = {grades(order)}"
+
+
+def capital(text: str) -> str:
+    """A text as a sentence or a title begins."""
+    return text[:1].upper() + text[1:]
+
+
+def count(number: int) -> str:
+    """A number of things in groups of three digits, which no line break parts."""
+    return f"{number:,}".replace(",", "\u00a0")
+
+
 def stretches(edges: Sequence[float]) -> str:
     """Contact edges, start and end of each stretch in turn, mm."""
     pairs = zip(edges[::2], edges[1::2], strict=True)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from reports.formatting import grades, number, seconds
+from reports.formatting import capital, count, number, rod_model, seconds
 from reports.peers import NOT_ASKED, PEERS, TITLES, UNITS, PeerRun, SideBySide, difference, peer_value
 from reports.runner import CaseRun, Failure
 
@@ -52,8 +52,8 @@ def peers_table(run: CaseRun) -> PeersTable:
         rows.append((_title(row), (own, _reference(row), *others)))
     costs = [
         PeerCost(
-            f"Rod model h{grades(run.rod.level)}, p = {grades(run.rod.order)}",
-            _count(rod.unknowns),
+            capital(rod_model(run.rod.level, run.rod.order)),
+            count(rod.unknowns),
             seconds(run.rod.total_seconds),
             f"{run.rod.peak_memory:.0f} MB",
             rod.outcome + run.rod.origin,
@@ -64,7 +64,7 @@ def peers_table(run: CaseRun) -> PeersTable:
         costs.append(
             PeerCost(
                 "3D, three meshes",
-                " / ".join(_count(each.quantities.unknowns) for each in run.references),
+                " / ".join(count(each.quantities.unknowns) for each in run.references),
                 seconds(sum(each.total_seconds for each in run.references)),
                 f"{finest.peak_memory:.0f} MB",
                 finest.quantities.outcome + finest.origin,
@@ -75,7 +75,7 @@ def peers_table(run: CaseRun) -> PeersTable:
         costs.append(
             PeerCost(
                 answer.solver,
-                _count(answer.unknowns),
+                count(answer.unknowns),
                 seconds(answer.seconds),
                 f"{answer.peak_memory:.0f} MB",
                 answer.outcome + kept,
@@ -153,7 +153,3 @@ def _reference(row: SideBySide) -> str:
         return f"{number(row.reference)} ± {row.uncertainty:.3f} mm"
     share = f"{100.0 * row.uncertainty / abs(row.reference):.3f} %" if row.reference else number(row.uncertainty)
     return f"{number(row.reference)} ± {share}"
-
-
-def _count(unknowns: int) -> str:
-    return f"{unknowns:,}".replace(",", " ")

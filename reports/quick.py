@@ -21,7 +21,7 @@ from cases.scene import SceneError
 from reports.case_comparison import evaluation_points, extract
 from reports.check.size import reference_unknowns
 from reports.comparison import CURVES, magnitude
-from reports.formatting import grades, measure, seconds, values_with_unit
+from reports.formatting import capital, measure, rod_model, seconds, values_with_unit
 from reports.processes import Progress
 from reports.quantities import DEFINITIONS, Quantities, evaluate
 from reports.runner import run_rod
@@ -115,7 +115,7 @@ def quick_look(case: Case, progress: Progress) -> QuickLook:
     references, why = _references(refined, progress)
     order = reference3d.formal_order(case.scene) if references else math.nan
     answers = [
-        *(f"Rod model h{grades(run.level)}, p = {grades(run.order)}: {_cost(run.quantities)}" for run in runs),
+        *(f"{capital(rod_model(run.level, run.order))}: {_cost(run.quantities)}" for run in runs),
         *(f"3D, mesh {mesh}: {_cost(found)}" for mesh, found in enumerate(references, 1)),
     ]
     problems = [

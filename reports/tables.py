@@ -12,9 +12,9 @@ from reports.comparison import Verdict
 from reports.formatting import (
     KIND_NAMES,
     MODEL_NAMES,
-    grades,
     measure,
     number,
+    rod_model,
     seconds,
     stretches,
     title,
@@ -44,7 +44,7 @@ def _cost(run: Run) -> str:
 
 
 def _model(run: Run) -> str:
-    return f"rod model h{grades(run.level)}, p = {grades(run.order)}" if run.model == "rod" else "3D reference"
+    return rod_model(run.level, run.order) if run.model == "rod" else "3D reference"
 
 
 def _vector(components: Array) -> str:
@@ -135,8 +135,8 @@ def print_comparison(run: CaseRun | Failure) -> None:
             f"[{STYLES[found.verdict]}]{found.verdict}[/]",
         )
     out.print(table)
-    for reason in dict.fromkeys(found.reason for found in run.comparisons if found.reason):
-        out.print(f"not resolved: {escape(reason)}")
+    for verdict, reason in dict.fromkeys((found.verdict, found.reason) for found in run.comparisons if found.reason):
+        out.print(f"{verdict}: {escape(reason)}")
     _print_peers(out, run)
     out.print()
 

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 from reports.chart.front import TOLERANCES, asked
 from reports.chart.points import ROD_AUTO, ROD_GRADED, ROD_OWN, TITLES, Chart, Charted, Point
+from reports.chart.wording import duration
 
 # What the choice keeps its tolerance in.
 PROMISED: tuple[Charted, ...] = ("contact_force", "largest_deflection", "clamp_moment")
@@ -165,8 +166,8 @@ def rows(found: Sequence[Choice]) -> list[tuple[str, list[str], list[str]]]:
             choice.point.chosen if choice.promised else f"{choice.point.chosen}, refused",
             _percent(max(estimates)) if estimates else "\u2013",
             _percent(max(errors)) if errors else "\u2013",
-            _seconds(choice.point),
-            "none" if cheapest is None else f"{_seconds(cheapest)} ({cheapest.label})",
+            duration(choice.point.median),
+            "none" if cheapest is None else f"{duration(cheapest.median)} ({cheapest.label})",
             "\u2013" if choice.ratio is None else f"{choice.ratio:.2g}",
         ]
         result.append((choice.case, cells, choice.shortcomings))
@@ -191,7 +192,3 @@ def _percent(share: float) -> str:
 
 def _part(flags: Sequence[bool]) -> str:
     return f"{sum(flags)} of {len(flags)}" + (f", {100.0 * sum(flags) / len(flags):.1f} %" if flags else "")
-
-
-def _seconds(point: Point) -> str:
-    return f"{1e3 * point.median:.3g} ms"

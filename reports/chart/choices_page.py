@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -38,7 +39,7 @@ def write_choices(charts: Sequence[Chart], output: Path) -> Path:
                     "quantity": each.quantity,
                     "of": each.of,
                     "error": each.error,
-                    "estimate": each.estimate,
+                    "estimate": each.estimate if math.isfinite(each.estimate) else None,
                     "uncertainty": each.uncertainty,
                 }
                 for each in choice.judged
@@ -56,26 +57,24 @@ def write_choices(charts: Sequence[Chart], output: Path) -> Path:
 
 def print_choices(charts: Sequence[Chart]) -> None:
     """Print the table of choices, in what they fall short, and what comes out over all."""
-    from rich.console import Console
     from rich.markup import escape
     from rich.table import Table
 
-    from reports.tables import WIDTH
+    from reports.tables import console
 
-    console = Console(highlight=False)
-    console = console if console.is_terminal else Console(highlight=False, width=WIDTH)
+    out = console()
     found = choices(charts)
     table = Table(*HEADINGS)
     for case, cells, _ in rows(found):
         table.add_row(escape(case), *map(escape, cells))
-    console.print(table)
+    out.print(table)
     for choice in found:
         for clause in choice.shortcomings:
-            console.print(escape(f"{choice.case}, {100.0 * choice.tolerance:g} %: {clause}"))
+            out.print(escape(f"{choice.case}, {100.0 * choice.tolerance:g} %: {clause}"))
     for title, reason in _without(charts):
-        console.print(escape(f"{title}: {reason}"))
+        out.print(escape(f"{title}: {reason}"))
     for sentence in summary(found):
-        console.print(escape(sentence))
+        out.print(escape(sentence))
 
 
 def _without(charts: Sequence[Chart]) -> list[tuple[str, str]]:

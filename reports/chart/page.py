@@ -26,6 +26,7 @@ from reports.chart.wording import (
     told,
     unfinished,
 )
+from reports.formatting import capital, count
 from reports.html import rendered
 from reports.store import write_whole
 
@@ -37,7 +38,7 @@ def chart_part(chart: Chart, anchor: str) -> tuple[dict[str, Any], dict[str, go.
     for quantity in chart.references:
         if not drawn_points(chart, quantity):
             reason = chart.references[quantity].reason or "no configuration tells it"
-            missing.append(f"{TITLES[quantity]}: there is no chart. {reason[0].upper()}{reason[1:]}.")
+            missing.append(f"{TITLES[quantity]}: there is no chart. {capital(reason)}.")
             continue
         panels = {f"{anchor}-chart-{quantity}-{panel}": chart_figure(chart, quantity, panel) for panel in COSTS}
         figures |= panels
@@ -66,7 +67,7 @@ def chart_part(chart: Chart, anchor: str) -> tuple[dict[str, Any], dict[str, go.
         "points": [
             (
                 told(point),
-                f"{point.unknowns:,}".replace(",", " "),
+                count(point.unknowns),
                 seconds_text(point),
                 str(len(point.seconds)),
                 [error_text(quantity, chart.error(quantity, point)) for quantity in chart.references],

@@ -90,25 +90,21 @@ def _times(ratio: float) -> str:
 
 def print_race(chart: Chart) -> None:
     """Print the race of a chart."""
-    from rich.console import Console
     from rich.markup import escape
     from rich.table import Table
 
-    from reports.tables import WIDTH
+    from reports.tables import console
 
-    console = Console(highlight=False)
-    console = console if console.is_terminal else Console(highlight=False, width=WIDTH)
-    console.print(
-        f"[bold]{escape(chart.title)}[/]: the cheapest of each method that keeps a tolerance in {raced(chart)}"
-    )
+    out = console()
+    out.print(f"[bold]{escape(chart.title)}[/]: the cheapest of each method that keeps a tolerance in {raced(chart)}")
     found = races(chart)
     table = Table("method", *(race_heading(race) for race in found), show_lines=True)
     for runner, cells in race_rows(found):
         table.add_row(runner, *(escape("\n".join(part for part in cell if part)) for cell in cells))
-    console.print(table)
-    console.print(RATIOS)
+    out.print(table)
+    out.print(RATIOS)
     for sentence in chart.notes:
-        console.print(escape(sentence))
+        out.print(escape(sentence))
 
 
 def raced(chart: Chart) -> str:

@@ -13,7 +13,18 @@ from cases.scene import ContactPair
 from reports.chart.page import chart_part
 from reports.comparison import Comparison
 from reports.figures import deflection_figure, moment_figure, pressure_figure
-from reports.formatting import MODEL_NAMES, gap, grades, measure, opposite, seconds, title, values_with_unit
+from reports.formatting import (
+    MODEL_NAMES,
+    capital,
+    count,
+    gap,
+    measure,
+    opposite,
+    rod_model,
+    seconds,
+    title,
+    values_with_unit,
+)
 from reports.html import PLOTLY_FILE, rendered
 from reports.pages.turning import turning_part
 from reports.peers_table import peers_table
@@ -123,8 +134,7 @@ def _answered(run: CaseRun, picture: DrawnPicture) -> tuple[dict[str, Any], dict
         "warnings": warnings,
         "sketch": scene_sketch(case.scene, run.rod.quantities),
         "sketch_caption": _sketch_caption(case.scene.contacts),
-        "level": grades(run.rod.level),
-        "order": grades(run.rod.order),
+        "rod_model": _rod_model(run),
         "published": [_row(found) for found in run.comparisons if found.kind == "published"],
         "numbers": f"../results/{case.name}-rod.json",
         "figures": places,
@@ -174,9 +184,12 @@ def _sketch_caption(contacts: Sequence[ContactPair]) -> str:
 
 
 def _solvers(run: CaseRun) -> list[tuple[str, Run]]:
-    rod = (f"Rod model h{grades(run.rod.level)}, p = {grades(run.rod.order)}", run.rod)
     meshes = [(f"3D, mesh {index} of {len(run.references)}", answer) for index, answer in enumerate(run.references, 1)]
-    return [rod, *meshes]
+    return [(_rod_model(run), run.rod), *meshes]
+
+
+def _rod_model(run: CaseRun) -> str:
+    return capital(rod_model(run.rod.level, run.rod.order))
 
 
 def _row(found: Comparison) -> dict[str, str]:
@@ -202,11 +215,10 @@ def _check_groups(comparisons: Sequence[Comparison]) -> list[dict[str, Any]]:
     )
     groups = []
     for model, kind, source in headings:
-        name = MODEL_NAMES[model][0].upper() + MODEL_NAMES[model][1:]
         rows = [
             _row(found) for found in comparisons if (found.model, found.kind, found.source) == (model, kind, source)
         ]
-        groups.append({"title": f"{name} against {source}", "rows": rows})
+        groups.append({"title": f"{capital(MODEL_NAMES[model])} against {source}", "rows": rows})
     return groups
 
 
@@ -214,7 +226,7 @@ def _cost_row(solver: str, answer: Run) -> dict[str, str]:
     quantities = answer.quantities
     return {
         "solver": solver,
-        "unknowns": f"{quantities.unknowns:,}".replace(",", " "),
+        "unknowns": count(quantities.unknowns),
         "setup": seconds(quantities.setup_seconds),
         "solve": seconds(quantities.solve_seconds),
         "total": seconds(answer.total_seconds),

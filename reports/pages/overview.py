@@ -13,7 +13,7 @@ import numpy as np
 
 from cases.case import Quantity
 from reports.comparison import Comparison
-from reports.formatting import number, seconds
+from reports.formatting import count, number, seconds
 from reports.nightly.drift import Drift
 from reports.runner import CaseRun, Failure, Run
 
@@ -128,7 +128,7 @@ def _held(run: CaseRun, quantity: Quantity, value: str) -> Cell:
 
 def _unknowns(answer: Run) -> Cell:
     unknowns = answer.quantities.unknowns
-    return Cell(f"{unknowns:,}".replace(",", "\u00a0"), key=str(unknowns))
+    return Cell(count(unknowns), key=str(unknowns))
 
 
 def _time(answer: Run) -> Cell:

@@ -14,7 +14,7 @@ import numpy as np
 from markupsafe import Markup
 
 from cases.scene import Scene
-from reports.formatting import grades, number
+from reports.formatting import capital, number, rod_model
 from reports.html import script_json
 from reports.runner import CaseRun, Run
 from reports.solution import Array
@@ -29,7 +29,7 @@ SHARE_OF_POINTS = 0.99
 
 def turning_part(run: CaseRun) -> dict[str, Any] | None:
     """What the template `pages/turning.html.jinja` and its script need to know; None where nothing was kept to draw."""
-    named = [(f"Rod model h{grades(run.rod.level)}, p = {grades(run.rod.order)}", run.rod)]
+    named = [(capital(rod_model(run.rod.level, run.rod.order)), run.rod)]
     named += [("3D, finest mesh", finest) for finest in run.references[-1:]]
     models = [(name, answer, answer.surface) for name, answer in named if answer.surface is not None]
     if not models:

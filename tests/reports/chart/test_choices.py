@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from dataclasses import replace
 from pathlib import Path
 
@@ -123,3 +124,10 @@ def test_a_choice_without_any_fixed_configuration_has_no_ratio(chosen: Chart) ->
 
     assert [choice.cheapest for choice in choices([alone])] == [None] * 3
     assert all(isinstance(choice, Choice) and choice.ratio is None for choice in choices([alone]))
+
+
+def test_an_estimate_that_knows_nothing_does_not_keep_the_page_from_being_written(chart: Chart, tmp_path: Path) -> None:
+    write_choices([replace(chart, points=(own(0.01, 100.5, math.inf, 0.015),))], tmp_path)
+
+    (numbers,) = json.loads((tmp_path / "results" / "choices.json").read_text())
+    assert [each["estimate"] for each in numbers["quantities"]] == [None, 1e-8]
