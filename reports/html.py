@@ -9,6 +9,7 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping
 from datetime import UTC, datetime
+from functools import cache
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
@@ -33,6 +34,24 @@ def rendered(template: str, figures: Mapping[str, go.Figure], plotly_file: str =
     ----------
     plotly_file : where the page finds plotly's script, relative to itself; without it the script stands in the page
     """
+    return (
+        _environment()
+        .get_template(template)
+        .render(
+            css=Markup((HERE / "page.css").read_text(encoding="utf-8")),
+            plotly=Markup("" if plotly_file else get_plotlyjs()),
+            plotly_file=plotly_file,
+            figures=script_json({place: _plain(figure) for place, figure in figures.items()}),
+            date=datetime.now(UTC).strftime("%d %B %Y, %H:%M UTC"),
+            version=_version(),
+            **content,
+        )
+    )
+
+
+@cache
+def _environment() -> Environment:
+    """Templates, compiled once for all pages of a report."""
     environment = Environment(
         loader=FileSystemLoader(HERE),
         autoescape=select_autoescape(default=True, default_for_string=True),
@@ -40,15 +59,7 @@ def rendered(template: str, figures: Mapping[str, go.Figure], plotly_file: str =
         trim_blocks=True,
     )
     environment.globals.update(verdict=_verdict_mark, verdicts=_verdict_marks)
-    return environment.get_template(template).render(
-        css=Markup((HERE / "page.css").read_text(encoding="utf-8")),
-        plotly=Markup("" if plotly_file else get_plotlyjs()),
-        plotly_file=plotly_file,
-        figures=script_json({place: _plain(figure) for place, figure in figures.items()}),
-        date=datetime.now(UTC).strftime("%d %B %Y, %H:%M UTC"),
-        version=_version(),
-        **content,
-    )
+    return environment
 
 
 def write_plotly(folder: Path) -> None:

@@ -21,6 +21,7 @@ from markupsafe import escape
 from reports import site
 from reports.nightly.drift import Drift
 from reports.nightly.rows import rows_of, this_night
+from reports.pages.history import history_part
 from reports.pages.turning import turning_part
 from reports.processes import ProcessFailed
 from reports.quantities import DEFINITIONS
@@ -178,6 +179,23 @@ def test_the_history_has_a_chart_for_each_quantity_and_solver(case_run: CaseRun)
     assert page.count('<polyline class="line"') >= len(subjects)
     assert "3 runs since 01 November 2026" in page
     assert 'id="history"' not in case_page(case_run)
+
+
+def test_a_history_takes_no_earlier_value_for_one_of_this_run(case_run: CaseRun) -> None:
+    nights = [this_night(f"2026110{day}T000000Z-00000000", datetime(2026, 11, day, tzinfo=UTC)) for day in (1, 2)]
+    first, second = ([*rows_of(case_run, night)] for night in nights)
+    only = [row for row in second if row.quantity == "contact_force"]
+    kept = [replace(row, kept_since="2026-11-01") for row in only]
+
+    history = history_part(case_run.case.name, [*first, *kept], ())
+
+    assert history is not None
+    lines = {line["what"]: line for _, group in history["groups"] for line in group}
+    force, centre = lines["rod model contact force overlap"], lines["rod model contact centre overlap"]
+    assert force["last"] != "none"
+    assert force["chart"].count('class="tonight"') == 1
+    for line in (centre, lines["rod model seconds"]):
+        assert (line["last"], line["chart"].count('class="tonight"')) == ("none", 0)
 
 
 def test_the_theory_page_defines_every_quantity_and_its_formulas_are_typeset(report: Path) -> None:
