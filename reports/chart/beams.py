@@ -120,8 +120,8 @@ class _Beam:
         return found
 
     def deflection_at(self, place: Array) -> Array:
-        """Indices of the deflections at nodes."""
-        return np.asarray(2 * np.searchsorted(self.node, place - SAME * self.rod.length))
+        """Indices of the deflections at the nodes that stand for places."""
+        return np.asarray(2 * np.searchsorted(0.5 * (self.node[1:] + self.node[:-1]), place))
 
     def clamp_moment(self, clamp: Clamp, unknowns: Array, along: Array) -> float:
         """Magnitude of the moment that a clamp exerts, N mm."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -102,13 +103,9 @@ def _cells(run: CaseRun) -> list[Cell]:
 
 
 def _nearest_to_failing(comparisons: Sequence[Comparison]) -> Cell:
-    """The largest difference over tolerance of all comparisons: above 1 it fails."""
-    shares = [
-        found.difference / found.tolerance
-        for found in comparisons
-        if found.difference is not None and np.isfinite(found.difference) and found.tolerance > 0.0
-    ]
-    return Cell(f"{max(shares):.2g}", key=f"{max(shares):.6g}") if shares else EMPTY
+    """The largest difference over tolerance of all comparisons: above 1 it fails, infinite where a difference is."""
+    shares = [found.difference / found.tolerance for found in comparisons if found.difference is not None]
+    return Cell(f"{max(shares):.2g}", key=_key(max(shares))) if shares else EMPTY
 
 
 def _held(run: CaseRun, quantity: Quantity, value: str) -> Cell:
@@ -123,7 +120,12 @@ def _held(run: CaseRun, quantity: Quantity, value: str) -> Cell:
     worst = max(held, key=lambda found: found.difference or 0.0)
     difference = worst.difference or 0.0
     sure = "" if worst.uncertainty is None else f" ± {100.0 * worst.uncertainty:.1g} %"
-    return Cell(value, f"{100.0 * difference:.2g} %{sure}", f"{difference:.6g}")
+    return Cell(value, f"{100.0 * difference:.2g} %{sure}", _key(difference))
+
+
+def _key(value: float) -> str:
+    """A number as the browser's script reads it."""
+    return f"{value:.6g}" if math.isfinite(value) else "Infinity"
 
 
 def _unknowns(answer: Run) -> Cell:

@@ -123,11 +123,14 @@ def sweep_points(
     name = load_case(name_or_path).name
     path = LIBRARY / f"{name_or_path}.toml"
     content = tomllib.loads((path if path.is_file() else Path(name_or_path)).read_text(encoding="utf-8-sig"))
-    places = []
-    for number, each in enumerate(variations):
-        if each.key in [other.key for other in variations[:number]]:
-            raise SweepError(f"--vary: found {each.key} twice; vary a key once")
-        places.append(_place(content, each.key))
+    places: list[tuple[Any, Any]] = []
+    for each in variations:
+        table, last = _place(content, each.key)
+        for (other, same), before in zip(places, variations, strict=False):
+            if table is other and last == same:
+                also = "" if each.key == before.key else f", once as {before.key}"
+                raise SweepError(f"--vary: found {each.key} twice{also}; vary a key once")
+        places.append((table, last))
     found = []
     combinations = list(product(*(each.values for each in variations)))
     if len(combinations) > MOST_VALUES:
@@ -179,9 +182,10 @@ def _place(content: dict[str, Any], key: str) -> tuple[Any, Any]:
         )
     value = table[rest]
     if isinstance(value, (dict, list)):
-        inside = [leaf for leaf in _leaves(content) if leaf.startswith(f"{parts}.")]
+        inside = next((leaf for leaf in _leaves(content) if leaf.startswith(f"{parts}.")), None)
+        remedy = "name a key that holds a number" if inside is None else f"name one of its numbers, such as {inside}"
         what = f"a {'table' if isinstance(value, dict) else 'list'}"
-        raise SweepError(f"--vary: found {shown(key)}, which is {what}; name one of its numbers, such as {inside[0]}")
+        raise SweepError(f"--vary: found {shown(key)}, which is {what}; {remedy}")
     if isinstance(value, bool) or (isinstance(value, str) and not _QUANTITY.fullmatch(value)):
         raise SweepError(f"--vary: found {shown(key)}, where {shown(value)} stands; name a key that holds a number")
     return table, rest

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import base64
 import json
+import math
 import re
 import struct
-from dataclasses import replace
+from dataclasses import astuple, replace
 from datetime import UTC, datetime
 from html.parser import HTMLParser
 from itertools import pairwise
@@ -22,6 +23,7 @@ from reports import site
 from reports.nightly.drift import Drift
 from reports.nightly.rows import rows_of, this_night
 from reports.pages.history import history_part
+from reports.pages.overview import overview_row
 from reports.pages.turning import turning_part
 from reports.processes import ProcessFailed
 from reports.quantities import DEFINITIONS
@@ -250,6 +252,14 @@ def test_where_nothing_can_be_drawn_the_page_says_so(case_run: CaseRun, monkeypa
     page = site.case_pages([case_run], site.pictures([case_run]))[case_run.case.name]
 
     assert "There is no picture: drawing failed" in page
+
+
+def test_a_difference_from_nothing_is_the_largest_of_all_and_sorts_so(case_run: CaseRun) -> None:
+    infinite = [replace(found, difference=math.inf, verdict="fail") for found in case_run.comparisons[:1]]
+
+    text, _, key = astuple(overview_row(replace(case_run, comparisons=tuple(infinite)), None)["cells"][0])
+
+    assert (text, key) == ("inf", "Infinity")  # what Number() of the browser reads
 
 
 def test_results_are_written_beside_the_page(

@@ -45,6 +45,7 @@ def test_ranges_have_units_counts_and_even_steps_or_ratios() -> None:
         ("loads.2.force.2=-2..-1kN:3", "the nearest are loads.1."),
         ("loads.1.force=-2..-1kN:3", "which is a list; name one of its numbers, such as loads.1.force.1"),
         ("rods.upper.section=1..2:3", "name a key that holds a number"),
+        ("compare=1..2:3", "which is a list; name a key that holds a number"),
         ("rods.upper.E=20..200mm:3", 'a stress is needed, such as 200000 (MPa) or "200 GPa"'),
         ("rods.upper.E=-20..200GPa:3", "Young's modulus"),
         ("sections.square.width=-15..15mm:3", "sections.square.width = -15 mm does not make a case"),
@@ -79,6 +80,13 @@ def test_several_keys_make_all_combinations() -> None:
 
     assert [point.values for point in points] == [(nu, gap) for nu in (0.2, 0.3) for gap in (0.0, 0.1, 0.2)]
     assert [point.case.scene.contacts[0].gap for point in points] == 2 * [0.0, 0.1, 0.2]
+
+
+def test_one_key_by_two_names_is_refused() -> None:
+    varied = [variation("rods.upper.E=20..40GPa:2"), variation("materials.upper.young_modulus=1..2GPa:2")]
+
+    with pytest.raises(SweepError, match="twice, once as rods.upper.E;"):
+        sweep_points(CASE, varied)
 
 
 def test_levels_can_be_swept() -> None:

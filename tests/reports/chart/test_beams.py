@@ -45,6 +45,18 @@ def test_a_cantilever_bends_as_in_closed_form(theory: Theory, drawn: tuple[float
     assert found.clamp_moment["rod", 0.0] == pytest.approx(force * LENGTH + line * LENGTH**2 / 2.0, rel=1e-9)
 
 
+def test_a_force_next_to_a_node_acts_there() -> None:
+    """1e-4 mm beside the middle: nearer to the node there than nodes may be to one another."""
+    place, force = 0.5 * LENGTH + 1e-4, 100.0
+    load = SectionForce("rod", place, (0.0, -force, 0.0))
+    scene = Scene("cantilever", (bar("rod", 0.0, LENGTH),), (Clamp("rod", "start"),), (load,), ())
+
+    found = solve_beams(scene, "Euler-Bernoulli", 2)
+
+    bent = force * place**2 * (3.0 * LENGTH - place) / (6.0 * BENDING)
+    assert found.largest_deflection["rod"] == pytest.approx(bent, rel=1e-5)  # a force moved by 7e-7 of its arm
+
+
 @pytest.mark.parametrize("theory", THEORIES)
 def test_cantilevers_that_touch_at_a_tip_share_the_load_as_in_closed_form(theory: Theory) -> None:
     """The upper one reaches 100 mm over the lower one's tip and is pushed down at its own: they touch at that tip."""
