@@ -85,7 +85,7 @@ def test_several_keys_make_all_combinations() -> None:
 def test_one_key_by_two_names_is_refused() -> None:
     varied = [variation("rods.upper.E=20..40GPa:2"), variation("materials.upper.young_modulus=1..2GPa:2")]
 
-    with pytest.raises(SweepError, match="twice, once as rods.upper.E;"):
+    with pytest.raises(SweepError, match=r"twice, once as rods\.upper\.E;"):
         sweep_points(CASE, varied)
 
 
