@@ -40,6 +40,15 @@ def code_version(*modules: str) -> str:
     return digest.hexdigest()
 
 
+def data_version(*folders: Path) -> str:
+    """Fingerprint of the TOML and JSON files of folders: of their names and of all that is in them."""
+    digest = hashlib.sha256()
+    for path in sorted(path for folder in folders for kind in ("*.toml", "*.json") for path in folder.glob(kind)):
+        content = path.read_bytes()
+        digest.update(f"{path.name} {len(content)}\n".encode() + content)
+    return digest.hexdigest()
+
+
 def source_files(modules: Iterable[str]) -> dict[str, Path]:
     """Modules and packages of the project that the given ones need, wherever the import stands, by name."""
     found: dict[str, Path] = {}
@@ -54,15 +63,16 @@ def source_files(modules: Iterable[str]) -> dict[str, Path]:
     return found
 
 
-def imported_names(path: Path) -> set[str]:
+@cache
+def imported_names(path: Path) -> frozenset[str]:
     """Every module, and every name in a module, that a source file imports."""
-    names = set()
+    names: set[str] = set()
     for node in _statements(ast.parse(path.read_bytes())):
         if isinstance(node, ast.Import):
             names |= {alias.name for alias in node.names}
         elif isinstance(node, ast.ImportFrom):
             names |= {str(node.module)} | {f"{node.module}.{alias.name}" for alias in node.names}
-    return names
+    return frozenset(names)
 
 
 def _statements(node: ast.AST) -> Iterator[ast.AST]:

@@ -444,10 +444,10 @@ def report(
     no_peers: NoPeers = False,
     no_charts: NoCharts = False,
 ) -> int:
-    """Solve cases both ways and write one self-contained page, with the results as JSON beside it.
+    """Solve cases both ways and write an overview and a page a case, with the results as JSON beside them.
 
     With the whole library come the pages of verification, performance and stability. What the same code has answered
-    before is taken from the cache, with the seconds it took then, and says so; these three pages never are.
+    before is taken from the cache, with the seconds it took then, and says so; the page of performance never is.
 
     Parameters
     ----------
@@ -474,10 +474,10 @@ def report(
 
     runs = _run_all(loaded, results, not no_peers)
     runs = runs if no_charts else _charted(runs, results)
-    outcomes = None if cases else _verification_outcomes()
+    outcomes = None if cases else _verification_outcomes(results)
     verification = None if outcomes is None else _write_verification(outcomes, output)
     performance = None if cases else _write_performance(output)
-    sweeps = None if cases else _stability()
+    sweeps = None if cases else _stability(results)
     stability = None if sweeps is None else _write_stability(sweeps, output)
     chosen = None if cases or no_charts else _write_choices(runs, output)
     made = [page.name for page in (verification, performance, stability) if page is not None]
@@ -757,12 +757,12 @@ def stability(*, output: Path = Path("report")) -> int:
     found = _stability()
     if found is None:
         return NOT_PASSED
-    from reports.stability.page import all_hold, summary
+    from reports.stability.page import summary
 
     page = _write_stability(found, output)
     print("\n".join(summary(found)))
     print(page)
-    return 0 if all_hold(found) else NOT_PASSED
+    return 0 if found.all_hold else NOT_PASSED
 
 
 @schema_app.command(name="result")
@@ -837,13 +837,13 @@ def _tolerance(given: str | None) -> float:
     return value
 
 
-def _verification_outcomes() -> dict[str, Outcome] | None:
+def _verification_outcomes(cache: Cache | None = None) -> dict[str, Outcome] | None:
     """What came of the verification checks; None, with the reason on standard error, if a check failed to run."""
     from reports.processes import ProcessFailed
     from reports.verification.registry import verify as carry_out
 
     try:
-        return carry_out()
+        return carry_out(cache)
     except ProcessFailed as error:
         print(f"rodcheck: verification: {error}", file=sys.stderr)
         return None
@@ -877,13 +877,13 @@ def _write_performance(output: Path, *, aloud: bool = False) -> Path | None:
     return page
 
 
-def _stability() -> Stability | None:
+def _stability(cache: Cache | None = None) -> Stability | None:
     """What all sweeps found; None, with the reason on standard error, if one failed to run."""
     from reports.processes import ProcessFailed
     from reports.stability.registry import carry_out
 
     try:
-        return carry_out()
+        return carry_out(cache)
     except ProcessFailed as error:
         print(f"rodcheck: stability: {error}", file=sys.stderr)
         return None

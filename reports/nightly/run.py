@@ -88,8 +88,8 @@ def nightly(
     if not has_run(output / HISTORY, night.run):
         write_run(output / HISTORY, rows)
     whole_library = {case.name for case in cases} >= set(library_names())
-    pages = write_pages(output) if whole_library else Pages()
-    notes = [*history.notes, *unfinished.notes]
+    pages = write_pages(output, cache) if whole_library else Pages()
+    notes = [*history.notes, *unfinished.notes, *pages.notes]
     notes += [note for run in runs if isinstance(run, CaseRun) for note in run.notes]
     text = summary(
         runs,

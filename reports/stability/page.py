@@ -1,4 +1,4 @@
-"""The stability page: one self-contained HTML page, a section for each sweep."""
+"""The stability page: a section for each sweep."""
 
 from __future__ import annotations
 
@@ -56,6 +56,7 @@ def render(stability: Stability) -> str:
         sweeps=content,
         height=HEIGHT,
         seconds=f"{stability.seconds:.0f}",
+        kept_since=stability.kept_since,
     )
 
 
@@ -66,11 +67,6 @@ def summary(stability: Stability) -> list[str]:
         f"{sweep.name}: {'holds' if sweep.holds(found) else 'does not hold'}. {sweep.claim(found)}"
         for sweep, found in carried_out
     ]
-
-
-def all_hold(stability: Stability) -> bool:
-    """Whether the numbers bear out every claim."""
-    return all(sweep.holds(stability.found[sweep.name]) for sweep in SWEEPS if sweep.name in stability.found)
 
 
 def _section(sweep: Sweep, found: Found, anchor: str) -> dict[str, Any]:

@@ -93,11 +93,13 @@ class Outcome:
     Attributes
     ----------
     values : one for each of the check's levels
+    kept_since : the day they were computed on, YYYY-MM-DD, if they come from the cache; else ''
     """
 
     check: Check
     reference: Reference
     values: tuple[float, ...]
+    kept_since: str = ""
 
     @property
     def errors(self) -> tuple[float, ...]:

@@ -32,13 +32,14 @@ def write_verification(groups: Sequence[Group], outcomes: Mapping[str, Outcome],
 def render(groups: Sequence[Group], outcomes: Mapping[str, Outcome]) -> str:
     """The page as HTML; `outcomes` by the checks' names."""
     content, figures = [], {}
+    kept_since = next(iter(outcomes.values())).kept_since
     for index, group in enumerate(groups, start=1):
         found = [outcomes[check.name] for check in group.checks]
         anchor = f"group-{index}"
         figure = error_figure(found)
         figures[f"{anchor}-figure"] = figure
         content.append(_group(group, found, anchor, figure.layout.height))
-    return rendered("verification/page.html.jinja", figures, PLOTLY_FILE, groups=content)
+    return rendered("verification/page.html.jinja", figures, PLOTLY_FILE, groups=content, kept_since=kept_since)
 
 
 def _group(group: Group, outcomes: Sequence[Outcome], anchor: str, height: int) -> dict[str, Any]:

@@ -8,6 +8,7 @@ from __future__ import annotations
 import json
 import math
 import re
+from dataclasses import replace
 from html.parser import HTMLParser
 from pathlib import Path
 
@@ -16,11 +17,12 @@ import pytest
 
 from cases.scene import Material, Rectangle
 from reports import command_line, site
+from reports.cache import Cache
 from reports.html import PLOTLY_FILE
 from reports.processes import ProcessFailed
 from reports.stability import plain_beams, plain_rods, registry
 from reports.stability.figures import ZERO, figure, looks
-from reports.stability.page import FILE_NAME, all_hold, render, summary, write_stability
+from reports.stability.page import FILE_NAME, render, summary, write_stability
 from reports.stability.registry import BY_NAME, SWEEPS, Stability
 from reports.stability.solids import face_weights, solid, solved
 from reports.stability.sweep import Curve, Found, Method, Picture, Sweep, curve
@@ -238,6 +240,29 @@ def few() -> Stability:
     return Stability({name: BY_NAME[name].measure(QUICK[name]) for name in ("Level", "Order")}, 1.0)
 
 
+def test_numbers_that_hold_are_taken_from_the_cache_and_the_page_says_so(
+    few: Stability, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(registry, "in_own_process", lambda *_: few)
+    first = registry.carry_out(Cache(tmp_path))
+    monkeypatch.setattr(registry, "in_own_process", lambda *_: pytest.fail("computed again"))
+
+    second = registry.carry_out(Cache(tmp_path))
+
+    assert replace(second, kept_since="") == first == few
+    assert "numbers from the cache" not in render(first)
+    assert "; numbers from the cache" in render(second)
+
+
+def test_numbers_that_do_not_hold_are_not_kept(few: Stability, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    bad = {name: Curve(each.x, (1e9,) * len(each.x)) for name, each in few.found["Order"]["condition"].items()}
+    broken = Stability({"Order": dict(few.found["Order"]) | {"condition": bad}}, 1.0)
+    monkeypatch.setattr(registry, "in_own_process", lambda *_: broken)
+
+    assert registry.carry_out(Cache(tmp_path)) == broken
+    assert list(tmp_path.iterdir()) == []
+
+
 class TestPage:
     def test_page_fetches_nothing_and_its_links_lead_somewhere(self, few: Stability) -> None:
         structure = Structure(render(few))
@@ -262,7 +287,7 @@ class TestPage:
         broken = Stability({"Order": dict(few.found["Order"]) | {"condition": bad}}, 1.0)
 
         assert not sweep.holds(broken.found["Order"])
-        assert not all_hold(broken)
+        assert not broken.all_hold
         assert render(broken).count("does not hold") > render(few).count("does not hold")
         assert summary(broken)[0].startswith("Order: does not hold.")
 
@@ -281,7 +306,7 @@ class TestCommand:
     def test_writes_the_page_and_prints_what_is_seen(
         self, few: Stability, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
     ) -> None:
-        monkeypatch.setattr(registry, "carry_out", lambda: few)
+        monkeypatch.setattr(registry, "carry_out", lambda _cache: few)
 
         code = command_line.run(["stability", "--output", str(tmp_path)])
 
@@ -292,7 +317,7 @@ class TestCommand:
     def test_sweep_that_fails_to_run_is_one_sentence(
         self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
     ) -> None:
-        def failing() -> Stability:
+        def failing(_cache: object) -> Stability:
             raise ProcessFailed("ValueError: no such level (section.py, line 1)")
 
         monkeypatch.setattr(registry, "carry_out", failing)

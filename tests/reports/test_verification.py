@@ -14,9 +14,21 @@ import pytest
 import reference3d
 from reference3d import grading
 from reports import command_line
+from reports.cache import Cache
 from reports.html import PLOTLY_FILE
 from reports.processes import ProcessFailed
-from reports.verification import bands, bending, contact_3d, curved, published, solid, solid_elements, torsion, wording
+from reports.verification import (
+    bands,
+    bending,
+    contact_3d,
+    curved,
+    published,
+    registry,
+    solid,
+    solid_elements,
+    torsion,
+    wording,
+)
 from reports.verification.check import Check, Outcome, Reference
 from reports.verification.page import FILE_NAME, render, write_verification
 from reports.verification.registry import CHECKS, GROUPS
@@ -245,7 +257,7 @@ def answered(monkeypatch: pytest.MonkeyPatch):
     """Answer `verify` with given outcomes, or a failure, instead of solving."""
 
     def answer(found: dict[str, Outcome] | Exception) -> None:
-        def verify() -> dict[str, Outcome]:
+        def verify(_cache: object) -> dict[str, Outcome]:
             if isinstance(found, Exception):
                 raise found
             return found
@@ -295,6 +307,49 @@ def test_verify_refuses_a_file_as_its_folder(tmp_path: Path, capsys: pytest.Capt
     assert capsys.readouterr().err.count("\n") == 1
 
 
+@pytest.fixture
+def computed(monkeypatch: pytest.MonkeyPatch) -> list[float]:
+    """Numbers given instead of computed: of every check what this list has last; the list grows with each time."""
+    factors = [1.0]
+
+    def numbers(_work: object, names: tuple[str, ...], _progress: object) -> registry.Numbers:
+        factors.append(factors[-1])
+        return {name: (Reference(2.0), tuple(2.0 * factors[-1] for _ in CHECKS[name].levels)) for name in names}
+
+    monkeypatch.setattr(registry, "in_own_process", numbers)
+    return factors
+
+
+def test_numbers_that_pass_are_taken_from_the_cache_and_the_page_says_so(computed: list[float], tmp_path: Path) -> None:
+    first = registry.verify(Cache(tmp_path))
+
+    second = registry.verify(Cache(tmp_path))
+
+    assert len(computed) == 2  # once
+    assert {outcome.kept_since for outcome in first.values()} == {""}
+    assert {name: replace(outcome, kept_since="") for name, outcome in second.items()} == first
+    assert "from the cache" not in render(GROUPS, first)
+    assert "Numbers from the cache, computed on 20" in render(GROUPS, second)
+
+
+def test_numbers_that_miss_or_are_damaged_are_computed_again(computed: list[float], tmp_path: Path) -> None:
+    computed.append(1.5)
+    registry.verify(Cache(tmp_path))
+    assert list(tmp_path.iterdir()) == []
+
+    computed.append(1.0)
+    registry.verify(Cache(tmp_path))
+    (path,) = tmp_path.iterdir()
+    path.write_bytes(path.read_bytes()[:-9])
+    times = len(computed)
+    cache = Cache(tmp_path)
+    found = registry.verify(cache)
+
+    assert len(computed) == times + 1
+    assert {outcome.verdict for outcome in found.values()} == {"pass"}
+    assert ["is damaged" in note for note in cache.notes] == [True]
+
+
 @pytest.mark.slow
 def test_the_report_of_the_whole_library_links_to_the_verification_page(
     case_run, outcomes: dict[str, Outcome], answered, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
@@ -302,7 +357,7 @@ def test_the_report_of_the_whole_library_links_to_the_verification_page(
     monkeypatch.setattr("reports.progress.run_cases", lambda *_: iter([case_run]))
     monkeypatch.setattr("reports.site.in_own_process", lambda *_: (_ for _ in ()).throw(ProcessFailed("not drawn")))
     monkeypatch.setattr(command_line, "_write_performance", lambda _output: tmp_path / "performance.html")
-    monkeypatch.setattr(command_line, "_stability", lambda: None)
+    monkeypatch.setattr(command_line, "_stability", lambda _cache: None)
     answered(outcomes)
 
     assert command_line.run(["report", "--output", str(tmp_path)]) == 1  # for want of stability
