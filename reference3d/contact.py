@@ -11,8 +11,10 @@ d0 - F / (c_n A), until the forces stay: then F depends on the penalty no more (
 in Optimization, ed. R. Fletcher, Academic Press 1969, 283-298).
 
 Instead of the nodes of the first face, those of the second may be the points (the other pass of node-to-surface
-contact), or Gauss points of the first face's elements (surface quadrature), to see what node-to-surface costs. Gauss
-points keep the springs as given: pressures free of them would not settle where displacements cannot tell them apart.
+contact), or Gauss points of the first face's elements (surface quadrature), to see what node-to-surface costs. Where
+meshes differ neither pass is the better one: nodes of the finer face get pressures that jump, nodes of the coarser one
+are farther off in the patch test. Gauss points keep the springs as given: pressures free of them would not settle where
+displacements cannot tell them apart.
 """
 
 from __future__ import annotations
