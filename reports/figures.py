@@ -21,6 +21,17 @@ from reports.truth import IndependentValues
 ROD, REFERENCE, TRUTH, PUBLISHED = "#0072B2", "#D55E00", "#1F2933", "#007A5A"
 GRID, INK = "#E3E8EE", "#1F2933"
 FONT = "system-ui, -apple-system, 'Segoe UI', Roboto, 'Helvetica Neue', Arial, sans-serif"
+# What all figures of the pages have in common, and all axes.
+LOOK = {
+    "template": "none",
+    "autosize": True,
+    "paper_bgcolor": "rgba(0,0,0,0)",
+    "plot_bgcolor": "rgba(0,0,0,0)",
+    "font": {"family": FONT, "size": 13, "color": INK},
+    "hovermode": "closest",
+}
+AXIS = {"gridcolor": GRID, "linecolor": "#9AA5B1", "showline": True}
+TICKS = {"ticks": "outside", "tickcolor": "#9AA5B1"}
 ROD_NAME, REFERENCE_NAME, TRUTH_NAME = "rod model", "3D of this run", "independent 3D"
 
 _LINES = {
@@ -212,21 +223,12 @@ def _rounded(values: Array) -> list[float]:
 def styled(figure: go.Figure, height: int) -> go.Figure:
     """The figure in the pages' look."""
     figure.update_layout(
-        template="none",
+        **LOOK,
         height=height,
-        autosize=True,
         margin={"l": 64, "r": 12, "t": 60, "b": 56},
-        paper_bgcolor="rgba(0,0,0,0)",
-        plot_bgcolor="rgba(0,0,0,0)",
-        font={"family": FONT, "size": 13, "color": INK},
         legend={"orientation": "h", "x": 0.0, "xanchor": "left", "y": 1.0, "yref": "container", "yanchor": "top"},
-        hovermode="closest",
     )
     figure.update_annotations(font={"size": 14, "color": INK})
-    figure.update_xaxes(
-        gridcolor=GRID, zeroline=False, linecolor="#9AA5B1", ticks="outside", tickcolor="#9AA5B1", showline=True
-    )
-    figure.update_yaxes(
-        gridcolor=GRID, zerolinecolor="#C3CCD6", zeroline=True, linecolor="#9AA5B1", showline=True, automargin=True
-    )
+    figure.update_xaxes(**AXIS, **TICKS, zeroline=False)
+    figure.update_yaxes(**AXIS, zerolinecolor="#C3CCD6", zeroline=True, automargin=True)
     return figure

@@ -28,7 +28,7 @@ from reports.chart.points import (
     Point,
 )
 from reports.chart.wording import error_text, seconds_text, told
-from reports.figures import FONT, GRID, INK, REFERENCE, ROD
+from reports.figures import AXIS, LOOK, REFERENCE, ROD, TICKS
 
 HEIGHT = 380
 NGSOLVE_COLOUR, CALCULIX_COLOUR, BEAM_COLOUR = "#007A5A", "#A23B72", "#52606D"
@@ -173,18 +173,8 @@ def _rounded(values: list[float]) -> list[float]:
 
 
 def _styled(figure: go.Figure) -> go.Figure:
-    figure.update_layout(
-        template="none",
-        height=HEIGHT,
-        autosize=True,
-        margin={"l": 64, "r": 12, "t": 10, "b": 50},
-        paper_bgcolor="rgba(0,0,0,0)",
-        plot_bgcolor="rgba(0,0,0,0)",
-        font={"family": FONT, "size": 13, "color": INK},
-        showlegend=False,
-        hovermode="closest",
-    )
-    axes = {"type": "log", "dtick": 1, "gridcolor": GRID, "zeroline": False, "linecolor": "#9AA5B1", "showline": True}
-    figure.update_xaxes(**axes, ticks="outside", tickcolor="#9AA5B1", tickformat="~g")
-    figure.update_yaxes(**axes, tickformat="~g", automargin=True)
+    figure.update_layout(**LOOK, height=HEIGHT, margin={"l": 64, "r": 12, "t": 10, "b": 50}, showlegend=False)
+    logarithmic = {**AXIS, "type": "log", "dtick": 1, "zeroline": False, "tickformat": "~g"}
+    figure.update_xaxes(**logarithmic, **TICKS)
+    figure.update_yaxes(**logarithmic, automargin=True)
     return figure
