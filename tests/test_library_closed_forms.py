@@ -12,11 +12,13 @@ from functools import cache
 
 import numpy as np
 import pytest
+from scipy.optimize import brentq
 
 from cases.case import Case
 from cases.loader import load_case
 from cases.scene import (
     Gravity,
+    Ground,
     LineLoad,
     Material,
     Orthotropic,
@@ -171,6 +173,44 @@ def test_a_beam_on_a_bed_sinks_as_hetenyi_says():
     left_out = 2.0 * parameter**2 * bending / shear
     middle = at(found, "beam", beam.length / 2.0)
     assert found.rod("beam").displacement[1, middle] == pytest.approx(sunk, rel=1.5 * left_out)
+
+
+def test_a_bar_parts_from_a_bed_where_a_beam_does():
+    """Half of the beam: free next to the clamp, on the bed next to the force, and not pressed where it parts from it."""
+    case, found = solved("bar-lifting-off-a-bed")
+    (bar,), (load,) = case.scene.rods, case.scene.loads
+    ground = case.scene.contact("bed").second
+    assert isinstance(load, SectionForce)
+    assert isinstance(ground, Ground)
+    assert ground.modulus is not None
+    assert isinstance(bar.section, Rectangle)
+    bending, _ = stiffness(bar)
+    half = bar.length / 2.0
+    root = (ground.modulus * bar.section.width / (4.0 * bending)) ** 0.25 * np.array([1.0 + 1.0j, -1.0 + 1.0j])
+
+    def on_bed(place, derivative):  # waves that die out away from the force and from the clamp
+        waves = root**derivative * np.exp(root * (place - np.array([half, 0.0])))
+        return np.concatenate([waves.real, waves.imag])
+
+    def free(place, derivative):  # cubic polynomials
+        powers = np.arange(4)
+        factor = np.prod([powers - each for each in range(derivative)], axis=0)
+        return factor * place ** np.maximum(powers - derivative, 0.0)
+
+    def deflection(edge):
+        nothing = np.zeros(4)
+        rows = [np.concatenate([free(0.0, derivative), nothing]) for derivative in (0, 1)]
+        rows += [np.concatenate([free(edge, derivative), -on_bed(edge, derivative)]) for derivative in range(4)]
+        rows += [np.concatenate([nothing, on_bed(half, derivative)]) for derivative in (1, 3)]
+        shares = np.linalg.solve(rows, [*np.zeros(7), -load.force[1] / (2.0 * bending)])
+        return float(free(edge, 0) @ shares[:4])
+
+    edge = brentq(deflection, 0.4 * half, 0.6 * half)
+
+    assert half - edge == pytest.approx(158.6, abs=0.05)  # as the case says
+    # shear takes 0.3 mm; edges are read between stations, where pressure fades away
+    contact = found.contact("bed")
+    assert contact.edges[0] == pytest.approx((edge, bar.length - edge), abs=contact.edges_resolution)
 
 
 def test_an_interference_fit_presses_as_two_cantilevers_do():
