@@ -176,7 +176,7 @@ def test_a_beam_on_a_bed_sinks_as_hetenyi_says():
 
 
 def test_a_bar_parts_from_a_bed_where_a_beam_does():
-    """Half of the beam: free next to the clamp, on the bed next to the force, and not pressed where it parts from it."""
+    """Half of the beam: free next to the clamp, on the bed next to the force, not pressed where it parts from it."""
     case, found = solved("bar-lifting-off-a-bed")
     (bar,), (load,) = case.scene.rods, case.scene.loads
     ground = case.scene.contact("bed").second
