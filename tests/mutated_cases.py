@@ -184,9 +184,7 @@ def _in_bytes(rng: random.Random, data: bytes) -> bytes:
         case 0:
             return data[:at]
         case 1:
-            return (
-                data[:at] + rng.choice((b"\0", b"\xff\xfe", b"\xc3\x28", b"\xed\xa0\x80", b"\x1a", b"\r")) + data[at:]
-            )
+            return data[:at] + rng.choice(NO_TEXT) + data[at:]
         case 2:
             return data[:at] + data[to:]
         case 3:
