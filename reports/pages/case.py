@@ -74,7 +74,7 @@ def case_page(
     """
     figures: dict[str, go.Figure] = {}
     if isinstance(run, Failure):
-        content = _failed(run)
+        content = {"failure": run.reason, "warnings": [], "sketch": "", "sections": None}
     else:
         assert picture is not None  # as it was run
         content, figures = _answered(run, picture)
@@ -102,17 +102,6 @@ def _contents(content: dict[str, Any]) -> list[tuple[str, str]]:
     ]
     history = [("history", "History")] if content["history"] else []
     return [*([] if content["failure"] else answered), *history, ("scene", "The scene")]
-
-
-def _failed(run: Failure) -> dict[str, Any]:
-    return {
-        "counts": {},
-        "failure": run.reason,
-        "warnings": [],
-        "sketch": "",
-        "sections": None,
-        "turning": None,
-    }
 
 
 def _answered(run: CaseRun, picture: DrawnPicture) -> tuple[dict[str, Any], dict[str, go.Figure]]:

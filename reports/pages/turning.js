@@ -116,7 +116,8 @@
       orientation: "h", x: 0.5, y: 0, yanchor: "top", len: 0.7, thickness: 12, outlinewidth: 0,
     };
     const found = {
-      height: (stacked ? NARROW_HEIGHT * count : HEIGHT) + BELOW, margin: {l: 0, r: 0, t: 8, b: BELOW}, paper_bgcolor: "#ffffff", showlegend: false,
+      height: (stacked ? NARROW_HEIGHT * count : HEIGHT) + BELOW, margin: {l: 0, r: 0, t: 8, b: BELOW},
+      paper_bgcolor: "#ffffff", showlegend: false,
       font: {family: "system-ui, sans-serif", size: 13, color: "#1f2933"}, annotations: [],
       coloraxis: {
         colorscale: TENSION_RED, cmin: -turning.stress, cmax: turning.stress,
@@ -159,7 +160,6 @@
     requestAnimationFrame(() => turnAll(change[`${scene}.camera`], scene).then(() => { asked = false; }));
   }
 
-  
   const cross = (a, b) => ({x: a.y * b.z - a.z * b.y, y: a.z * b.x - a.x * b.z, z: a.x * b.y - a.y * b.x});
   const dot = (a, b) => a.x * b.x + a.y * b.y + a.z * b.z;
   // Rodrigues' formula
