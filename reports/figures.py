@@ -186,32 +186,24 @@ def _panels(titles: Sequence[str], rows: int, *, shared_y: bool = False) -> go.F
 
 
 def _add_line(figure: go.Figure, name: str, x: Array, y: Array, row: int, column: int, *, legend: bool) -> None:
+    _add(figure, name, x, y, row, column, legend, mode="lines", line=_LINES[name])
+
+
+def _add_points(figure: go.Figure, x: Array, y: Array, row: int, column: int, *, legend: bool) -> None:
+    _add(figure, TRUTH_NAME, x, y, row, column, legend, mode="markers", marker=_POINTS)
+
+
+def _add(figure: go.Figure, name: str, x: Array, y: Array, row: int, column: int, legend: bool, **look: object) -> None:
     figure.add_scatter(
         x=_rounded(x),
         y=_rounded(y),
         name=name,
         legendgroup=name,
         showlegend=legend,
-        mode="lines",
-        line=_LINES[name],
         hovertemplate="%{y:.5g} at %{x:.2f} mm",
         row=row,
         col=column,
-    )
-
-
-def _add_points(figure: go.Figure, x: Array, y: Array, row: int, column: int, *, legend: bool) -> None:
-    figure.add_scatter(
-        x=_rounded(x),
-        y=_rounded(y),
-        name=TRUTH_NAME,
-        legendgroup=TRUTH_NAME,
-        showlegend=legend,
-        mode="markers",
-        marker=_POINTS,
-        hovertemplate="%{y:.5g} at %{x:.2f} mm",
-        row=row,
-        col=column,
+        **look,
     )
 
 

@@ -72,6 +72,7 @@ def case_page(
     neighbours : address, title and 'prev' or 'next' of the cases before and after this one
     history : of `history_part`; None where there is none
     """
+    content: dict[str, Any]
     figures: dict[str, go.Figure] = {}
     if isinstance(run, Failure):
         content = {"failure": run.reason, "warnings": [], "sketch": "", "sections": None}
