@@ -155,12 +155,13 @@ def compare(
     -----
     The difference is the largest over all entries; relative ones refer to the reference's largest
     magnitude. Where the numbers of entries differ (one stretch in contact against two), no difference can be
-    formed: a fail.
+    formed: a fail, unless the reference's own meshes differ in it, too, so that its uncertainty is not known.
     """
     difference: float | None
     if value.shape != reference.value.shape:
         difference = uncertainty = None
-        verdict, reason = judge(math.inf, 0.0, check.tolerance, outcomes)
+        certain = None if reference.uncertainty is None else 0.0
+        verdict, reason = judge(math.inf, certain, check.tolerance, outcomes)
         reason = reason or f"{value.size} values against {reference.value.size}"
         shown = value.ravel(), reference.value.ravel()
     else:

@@ -50,7 +50,7 @@ def test_a_solver_that_did_not_converge_never_passes() -> None:
     assert reason == "a solver did not converge: cycling"
 
 
-def held(quantity: str, value: list[float], reference: list[float], uncertainty: float = 0.0, **changes):
+def held(quantity: str, value: list[float], reference: list[float], uncertainty: float | None = 0.0, **changes):
     check = Check(quantity, "overlap", changes.pop("tolerance", 0.01))
     estimate = Estimate(np.array(reference), uncertainty)
     return compare(check, "rod", np.array(value), estimate, kind="reference", source="test", **changes)
@@ -77,6 +77,12 @@ def test_another_number_of_stretches_is_a_fail() -> None:
 
     assert (found.verdict, found.difference) == ("fail", None)
     assert "4 values against 2" in found.reason
+
+
+def test_another_number_of_stretches_fails_no_model_where_the_references_own_meshes_differ_in_it() -> None:
+    found = held("contact_edges", [200.0, 222.0], [200.0, 210.0, 215.0, 222.0], uncertainty=None, tolerance=1.0)
+
+    assert (found.verdict, found.difference) == ("not resolved", None)
 
 
 def test_no_contact_on_either_side_is_agreement() -> None:
