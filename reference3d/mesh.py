@@ -11,6 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 from skfem import MeshHex
 
+from reference3d.gmsh_model import new_model
+
 Array = NDArray[np.float64]
 
 GMSH_HEXAHEDRON = 5
@@ -51,14 +53,7 @@ def box_mesh(x: Array, y: Array, s: Array) -> MeshHex:
 
 def _extrude(x: Array, y: Array, s: Array) -> tuple[Array, NDArray[np.int64]]:
     """Points, shape (3, n), and hexahedra, shape (m, 8), of the box in gmsh's order."""
-    import gmsh  # its wheel needs X libraries, so only making a mesh asks for it
-
-    started_here = not gmsh.isInitialized()
-    if started_here:
-        gmsh.initialize(interruptible=False)
-    try:
-        gmsh.option.setNumber("General.Terminal", 0)
-        gmsh.model.add("box")
+    with new_model("box", {}) as gmsh:
         geometry = gmsh.model.geo
         entities: list[tuple[int, int]] = [(0, geometry.addPoint(x[0], y[0], s[0]))]
         for axis, borders in enumerate((x, y, s)):
@@ -75,10 +70,6 @@ def _extrude(x: Array, y: Array, s: Array) -> tuple[Array, NDArray[np.int64]]:
         gmsh.model.mesh.generate(3)
         tags, coordinates, _ = gmsh.model.mesh.getNodes()
         _, corners = gmsh.model.mesh.getElementsByType(GMSH_HEXAHEDRON)
-        gmsh.model.remove()
-    finally:
-        if started_here:
-            gmsh.finalize()
     number = np.zeros(int(tags.max()) + 1, dtype=np.int64)
     number[tags] = np.arange(len(tags))
     return coordinates.reshape(-1, 3).T.copy(), number[corners].reshape(-1, 8)

@@ -17,6 +17,7 @@ from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
 from cases.scene import Box, Circle, Face, Polygon, Rectangle, Ring, Section
+from reference3d.gmsh_model import new_model
 from reference3d.grading import denser_at_one
 from reference3d.quadratic import line_nodes, shape_derivatives, shape_functions
 
@@ -272,8 +273,6 @@ def _polygon_blocks(section: Polygon) -> Array:
 
 def _quadrilaterals(section: Polygon, block: float) -> Array:
     """Quadrilaterals by gmsh, of a size of about `block` in the unit of `POLYGON_BLOCKS`."""
-    import gmsh  # its wheel needs X libraries, so only making a mesh asks for it
-
     loops = [np.array(loop, dtype=float) for loop in (section.outer, *section.holes)]
     area, around = 0.0, 0.0
     for number, loop in enumerate(loops):
@@ -282,12 +281,8 @@ def _quadrilaterals(section: Polygon, block: float) -> Array:
         area += enclosed if number == 0 else -enclosed
         around += float(np.linalg.norm(following - loop, axis=1).sum())
     size = block * 2.0 * area / around
-    started_here = not gmsh.isInitialized()
-    if started_here:
-        gmsh.initialize(interruptible=False)
-    try:
-        gmsh.option.setNumber("General.Terminal", 0)
-        gmsh.model.add("section")
+    options = {"Mesh.Algorithm": 8.0, "Mesh.RecombineAll": 1.0, "Mesh.SubdivisionAlgorithm": 1.0}
+    with new_model("section", options) as gmsh:
         geometry = gmsh.model.geo
         curves = []
         for loop in loops:
@@ -296,19 +291,9 @@ def _quadrilaterals(section: Polygon, block: float) -> Array:
             curves.append(geometry.addCurveLoop(lines))
         geometry.addPlaneSurface(curves)
         geometry.synchronize()
-        options = {"Mesh.Algorithm": 8, "Mesh.RecombineAll": 1, "Mesh.SubdivisionAlgorithm": 1}
-        before = {name: gmsh.option.getNumber(name) for name in options}
-        for name, value in options.items():
-            gmsh.option.setNumber(name, value)
         gmsh.model.mesh.generate(2)
-        for name, value in before.items():
-            gmsh.option.setNumber(name, value)
         tags, coordinates, _ = gmsh.model.mesh.getNodes()
         _, corners_of = gmsh.model.mesh.getElementsByType(GMSH_QUADRANGLE)
-        gmsh.model.remove()
-    finally:
-        if started_here:
-            gmsh.finalize()
     place = np.zeros(int(tags.max()) + 1, dtype=np.int64)
     place[tags] = np.arange(len(tags))
     blocks = coordinates.reshape(-1, 3)[place[corners_of].reshape(-1, 4), :2]
