@@ -1,4 +1,4 @@
-"""The paper's four cases, as design and paper state them."""
+"""The library: the paper's four cases as paper and design state them, and what every case must say of itself."""
 
 import json
 
