@@ -357,41 +357,41 @@ def on_given(assembled: AssembledRod, functionals: Functionals) -> Array:
 
 
 def coefficients(assembled: AssembledRod, load: Functionals, held: Mapping[int, Array]) -> tuple[Array, ...]:
-    """Degrees of freedom under a load (m = 1), element by element, shape (order + 1, n_fields) each.
+    """Degrees of freedom under each of m loads, element by element, shape (order + 1, n_fields, m) each.
 
-    held : displacement of held nodes where it is not zero, by node, shape (n_fields,) each; its part in the load,
-        -K held, is in `load` already
+    held : displacements of held nodes where they are not zero, by node, shape (n_fields, m) each; their part in the
+        load, -K held, is in `load` already
     """
     chain = assembled.chain
-    carried = chain.back_solve(load.nodal)[:, 0]
+    carried = chain.back_solve(load.nodal)
     root = np.sqrt(axial_modulus(assembled.rod.material))
     halves = bubble_halves(load)
     result = []
     for index, element in enumerate(assembled.elements):
         count = element.fields.count
-        values = np.zeros((element.order + 1, count))
+        values = np.zeros((element.order + 1, count, carried.shape[1]))
         for side in (0, 1):
             node = index + side
             values[side] = extended(carried[chain.rows[node]], chain.ends[index][side], count)
             if node in held:
                 values[side, assembled.node_places(index, side)] += held[node]
-        right = halves.get(index, 0.0) / root - element.half_coupling @ values[:2].ravel()
-        values[2:] = element.bubbles.back_solve(right[:, None]).reshape(-1, count)
+        right = halves.get(index, 0.0) / root - element.half_coupling @ values[:2].reshape(2 * count, -1)
+        values[2:] = element.bubbles.back_solve(right).reshape(values[2:].shape)
         result.append(values)
     return tuple(result)
 
 
 def bubble_halves(load: Functionals) -> dict[int, Array]:
-    """L_bb^-1 c_b of a load (m = 1), by element, shape (n_bubbles,) each."""
+    """L_bb^-1 c_b of m loads that all have shares in the same elements, by element, shape (n_bubbles, m) each."""
     halves: dict[int, Array] = {}
     for index, _, half in load.bubbles:
-        halves[index] = halves.get(index, 0.0) + half[:, 0]
+        halves[index] = halves.get(index, 0.0) + half
     return halves
 
 
 def stored_energy(assembled: AssembledRod, load: Functionals, values: Sequence[Array]) -> float:
-    """Elastic energy of a rod and the beds under it in the state that `coefficients` gives, N mm."""
-    energy = sum(0.5 * float(half @ half) for half in bubble_halves(load).values())
+    """Elastic energy of a rod and the beds under it in one state, N mm; `values` of shape (order + 1, n_fields)."""
+    energy = sum(0.5 * float(np.vdot(half, half)) for half in bubble_halves(load).values())
     modulus = axial_modulus(assembled.rod.material)
     for element, each in zip(assembled.elements, values, strict=True):
         nodal = each[:2].ravel()

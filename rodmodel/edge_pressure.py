@@ -100,30 +100,30 @@ def edge_pressures(system: ContactSystem, stretches: Sequence[Stretch], edges: S
 def edge_slopes(pressures: EdgePressures, edges: Sequence[Edge], rates: Mapping[str, Rates]) -> Array:
     """Derivatives of the pressures (rows) by the edges' positions (columns), MPa/mm, shape (n_edges, n_edges)."""
     system = pressures.system
-    loaded = system.states(pressures.force, pressures.motion)
-    adjoint = [
-        system.states(pressures.force + force, pressures.motion + motion)
-        for force, motion in zip(pressures.adjoint.T, pressures.adjoint_motion.T, strict=True)
-    ]
+    # The state under the loads, and what the adjoint forces alone do.
+    states = system.displacements(
+        np.column_stack([pressures.force, pressures.adjoint]),
+        np.column_stack([pressures.motion, pressures.adjoint_motion]),
+        np.append(1.0, np.zeros(len(edges))),
+    )
     moving = {pair: _station_rates(system, pair, rates) for pair in system.grids}
     slopes = np.zeros((len(edges), len(edges)))
     for name, rod in system.rods.items():
-        displacement = loaded[name].coefficients
-        responses = [list(map(np.subtract, each[name].coefficients, displacement)) for each in adjoint]
         longer = np.diff(rates[name].at(rod.borders))
         modulus = axial_modulus(rod.rod.material)
         for index in np.flatnonzero(longer.any(axis=0)):
-            of_length = [
-                modulus * length_slope(rod.elements[index], own[index], displacement[index]) for own in responses
-            ]
+            displacement, responses = states[name][index][..., 0], states[name][index][..., 1:]
+            of_length = modulus * length_slope(rod.elements[index], responses, displacement)
             slopes += np.outer(of_length, longer[:, index])
         spread = [load for load in system.scene.loads if not isinstance(load, SectionForce | SectionMoment)]
         for part in load_parts(rod, spread, column=0):
             growth = longer[:, part.element] / rod.elements[part.element].length
-            slopes -= np.outer([np.vdot(own[part.element], part.values) for own in responses], growth)
+            slopes -= np.outer(
+                part.values.ravel() @ states[name][part.element][..., 1:].reshape(part.values.size, -1), growth
+            )
         for pair, sliding, station, direction in _slidings(system, rod, moving, rates[name]):
             points = system.points[pair]
-            slope, *response_slopes = (_slopes_at(rod, each, station, direction) for each in (displacement, *responses))
+            slope, *response_slopes = _slopes_at(rod, states[name], station, direction)
             of_sliding = pressures.adjoint[points].T * slope + pressures.force[points] * np.array(response_slopes)
             slopes -= of_sliding @ sliding.T
     for pair, grid in system.grids.items():
@@ -189,11 +189,15 @@ def _sense(first: Rod, second: Rod) -> float:
 def _slopes_at(
     rod: AssembledRod, values: Sequence[Array], station: Array, direction: Callable[[Fields], Array]
 ) -> Array:
-    """Derivative along the rod of -u_n at its contact points, shape (n_points,)."""
+    """Derivatives along the rod of -u_n at its contact points in m states, shape (m, n_points)."""
     index, xi = rod.locate(station)
-    slopes = np.empty(len(station))
+    slopes = np.empty((values[0].shape[2], len(station)))
+    directions: dict[Fields, Array] = {}
     for number in np.unique(index):
         element, members = rod.elements[number], np.flatnonzero(index == number)
+        if element.fields not in directions:
+            directions[element.fields] = direction(element.fields)
         along = shape_function_slopes(element.order, xi[members]) * (2.0 / element.length)
-        slopes[members] = np.einsum("am,af,fm->m", along, values[number], direction(element.fields)[:, members])
+        of_fields = np.einsum("an,afm->mfn", along, values[number])
+        slopes[:, members] = (of_fields * directions[element.fields][:, members]).sum(axis=1)
     return slopes

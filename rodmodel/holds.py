@@ -171,10 +171,10 @@ def restricted(values: Array, free: Free) -> Array:
 
 
 def extended(carried: Array, free: Free, count: int) -> Array:
-    """Fields from what is carried, shape (n_free,) to (count,): T carried."""
+    """Fields from what is carried, shape (n_free, m) to (count, m): T carried."""
     if free.dtype.kind == "f":
         return np.asarray(free @ carried)
-    result = np.zeros(count)
+    result = np.zeros((count, carried.shape[1]))
     result[free] = carried
     return result
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,7 +17,7 @@ from cases.scene import SectionForce, SectionMoment
 from rodmodel.assembly import AssembledRod
 from rodmodel.holds import held_sections
 from rodmodel.pairing import facing_points, on_second
-from rodmodel.section import axial_modulus
+from rodmodel.section import Fields, axial_modulus
 from rodmodel.shape import extents
 from rodmodel.solution import Solution
 from rodmodel.stiffness import Element
@@ -131,31 +132,39 @@ def unit_energy(element: Element, values: Array) -> float:
 
 def _looked_at(element: Element, values: Array) -> tuple[float, Array, float, float]:
     """Unit energy of an element in all and in the fields of each degree alone, and what `_further_orders` says."""
-    _, i, j = element.fields.table
-    of_degree = (i + j)[:, None] == np.arange(-1, element.fields.level + 1)
-    of_degree[:, 0] = True
+    of_degree = _of_degree(element.fields)
     each = values[..., None] * of_degree
     nodal, bubbles = each[:2].reshape(-1, of_degree.shape[1]), each[2:].reshape(-1, of_degree.shape[1])
     groups = element.bubbles.groups
     half = np.concatenate(
         [block.T @ bubbles[group] for group, block in zip(groups, element.bubbles.blocks, strict=True)]
     )
-    orders = 2 + np.concatenate(groups) // element.fields.count
-    surplus = _further_orders(0.5 * half[:, 0] ** 2, orders, element.order)
+    surplus = np.empty(len(half))
+    surplus[np.concatenate(groups)] = 0.5 * half[:, 0] ** 2
+    further = _further_orders(surplus.reshape(element.order - 1, -1).sum(axis=1))
     # L^T b + L^-1 K_bn n, in which |.|^2 / 2 is what condensation leaves over of the energy.
     half += element.half_coupling @ nodal
     energies = 0.5 * ((nodal * (element.condensed @ nodal)).sum(axis=0) + (half**2).sum(axis=0))
-    return float(energies[0]), energies[1:], *surplus
+    return float(energies[0]), energies[1:], *further
 
 
-def _further_orders(surplus: Array, orders: NDArray[np.int64], order: int) -> tuple[float, float]:
+@lru_cache(maxsize=64)
+def _of_degree(fields: Fields) -> Array:
+    """1 for all fields, then for those of each degree from 0 on, else 0; shape (n_fields, level + 2)."""
+    _, i, j = fields.table
+    chosen = np.column_stack([np.ones(fields.count), (i + j)[:, None] == np.arange(fields.level + 1)])
+    chosen.flags.writeable = False
+    return chosen
+
+
+def _further_orders(surplus: Array) -> tuple[float, float]:
     """Unit energy that all further orders would find, and by what factor it falls with each, going by the last two.
 
-    surplus : |L^T b|^2 / 2 of each bubble. The highest bubbles come last in the factor of K_bb, whose last block is
-        that of their Schur complement: their part is what the element would lose without them, all lower ones free to
-        make up for it
-    orders : of each bubble
+    surplus : |L^T b|^2 / 2 of the bubbles of each order from 2 on. The highest bubbles come last in the factor of K_bb,
+        whose last block is that of their Schur complement: their part is what the element would lose without them, all
+        lower ones free to make up for it
     """
-    last, before = (float(surplus[orders == each].sum()) for each in (order, order - 1))
+    last = float(surplus[-1])
+    before = float(surplus[-2]) if len(surplus) > 1 else 0.0
     fall = min(SLOWEST, last / before) if before > 0.0 else SLOWEST
     return last * fall / (1.0 - fall), fall

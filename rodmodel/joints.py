@@ -85,8 +85,8 @@ class Skeleton:
         return lower_solve(self.factor, self.elastic.T @ on_joints)
 
     def motion(self, half: Array, free: Array) -> Array:
-        """Motions under a half-solved load, shape (n_elastic,), with free motions (n_free,); shape (n_motions,)."""
-        return np.asarray(self.elastic @ transposed_solve(self.factor, half[:, None])[:, 0] + self.free @ free)
+        """Motions under half-solved loads (n_elastic, m), with free motions (n_free, m), shape (n_motions, m)."""
+        return np.asarray(self.elastic @ transposed_solve(self.factor, half) + self.free @ free)
 
 
 def skeleton(

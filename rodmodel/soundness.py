@@ -59,7 +59,8 @@ def lost_accuracy(assembled: AssembledRod, coefficients: Sequence[Array]) -> flo
         for place, index in enumerate(kind):
             given[place] = coefficients[index][:2]
             for side in (0, 1):
-                own[place, side] = extended(carried[chain.rows[index + side]], chain.ends[index][side], count)
+                at_node = carried[chain.rows[index + side], None]
+                own[place, side] = extended(at_node, chain.ends[index][side], count)[:, 0]
         internal = (own.reshape(len(kind), -1) + _rigid_part(assembled, kind[0], given)) @ element.condensed
         for place, index in enumerate(kind):
             for side, nodal in enumerate(internal[place].reshape(2, count)):

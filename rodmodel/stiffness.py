@@ -149,15 +149,18 @@ def condensed_element(family: ElementFamily, length: float) -> Element:
     return Element(family.fields, family.order, length, family.section, condensed, factor, half)
 
 
-def length_slope(element: Element, first: Array, second: Array) -> float:
-    """Derivative of first . K second by the length of an element of constant section stiffness, for unit modulus.
+def length_slope(element: Element, first: Array, second: Array) -> Array:
+    """Derivatives of first . K second by the length of an element of constant section stiffness, for unit modulus.
 
-    first, second : degrees of freedom, shape (order + 1, n_fields) each, that stay where they are on the element
+    Of m first ones, shape (m,).
+
+    first, second : degrees of freedom, shape (order + 1, n_fields, m) and (order + 1, n_fields), that stay where they
+        are on the element
     """
     m00, _, m11 = axial_matrices(element.order)
-    growing = np.vdot(first, m00 @ second @ element.section.s00)
-    falling = np.vdot(first, m11 @ second @ element.section.s11)
-    return float(0.5 * growing - 2.0 / element.length**2 * falling)
+    growing, falling = m00 @ second @ element.section.s00, m11 @ second @ element.section.s11
+    change = 0.5 * growing - 2.0 / element.length**2 * falling
+    return np.asarray(change.ravel() @ first.reshape(change.size, -1))
 
 
 def axial_quadrature(order: int, left: float, right: float, knots: Array) -> tuple[Array, Array]:

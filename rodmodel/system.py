@@ -100,17 +100,35 @@ class ContactSystem:
 
     def states(self, force: Array, free: Array) -> dict[str, RodState]:
         """The rods under the given loads, contact forces (N, shape (n,)) and free motions (n_free,), by name."""
-        half = self.on_joints @ np.append(force, 1.0)
-        motion = np.empty(0) if self.skeleton is None else self.skeleton.motion(half, free)
+        result = {}
+        for name, (load, held) in self._loaded(force[:, None], free[:, None], np.ones(1)).items():
+            values = coefficients(self.rods[name], load, held)
+            moved = {node: each[:, 0] for node, each in held.items()}
+            result[name] = RodState(load, moved, tuple(each[..., 0] for each in values))
+        return result
+
+    def displacements(self, force: Array, free: Array, given: Array) -> dict[str, tuple[Array, ...]]:
+        """Degrees of freedom of every rod's elements, by name, shape (order + 1, n_fields, m) each, in m states.
+
+        force, free : contact forces, N, shape (n, m), and free motions, shape (n_free, m)
+        given : how much of the given loads and displacements acts in each, shape (m,)
+        """
+        loaded = self._loaded(force, free, given)
+        return {name: coefficients(self.rods[name], *each) for name, each in loaded.items()}
+
+    def _loaded(self, force: Array, free: Array, given: Array) -> dict[str, tuple[Functionals, dict[int, Array]]]:
+        """What acts on the rods in the states of `displacements`, and displacements of held nodes, (n_fields, m)."""
+        half = self.on_joints @ np.vstack([force, given])
+        motion = np.empty((0, len(given))) if self.skeleton is None else self.skeleton.motion(half, free)
         result = {}
         for name, assembled in self.rods.items():
-            load = combined(self.functionals[name], np.append(force[self.places[name]], 1.0)[:, None])
-            held = given_displacement(assembled)
+            load = combined(self.functionals[name], np.vstack([force[self.places[name]], given]))
+            held = {node: np.outer(each, given) for node, each in given_displacement(assembled).items()}
             if self.skeleton is not None and name in self.skeleton.rods:
                 joined = self.skeleton.rods[name]
-                load = added(load, combined(joined.response, -motion[:, None]))
+                load = added(load, combined(joined.response, -motion))
                 held |= {node: unit @ motion for node, unit in joined.motions.items()}
-            result[name] = RodState(load, held, coefficients(assembled, load, held))
+            result[name] = load, held
         return result
 
     def moved_by(self, free: Array) -> list[str]:
