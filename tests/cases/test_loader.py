@@ -1049,6 +1049,7 @@ CURVED = single(
 )
 
 
+@pytest.mark.slow
 @given(data=st.data())
 def test_no_edit_of_a_line_gives_anything_but_a_case_or_a_sentence(data, tmp_path_factory):
     lines = data.draw(st.sampled_from([GOOD, CURVED, EVERYTHING])).splitlines()

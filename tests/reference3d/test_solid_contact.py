@@ -76,6 +76,7 @@ def test_parallel_bars_solved_in_both_ways_press_on_each_other_alike(two_cantile
     assert (other.station[0], other.station[-1]) == pytest.approx((200.0, 300.0))
 
 
+@pytest.mark.slow
 def test_crossing_cantilevers_share_a_force_by_their_stiffness_and_keep_balance():
     solution = crossed(1)
 
@@ -109,6 +110,7 @@ def test_where_contact_was_located_and_where_not_the_answer_is_the_same():
     assert forces[0].sum() == pytest.approx(crossed(1).contact_points("cross").force.sum(), rel=2e-3)
 
 
+@pytest.mark.slow
 def test_an_arch_on_a_bar_touches_below_its_middle_and_passes_on_what_its_supports_leave():
     start = (50.0 - 85.0 * math.sin(0.5), 95.0 - 85.0 * math.cos(0.5), 0.0)
     line = Helix(start, (50.0, 95.0, 0.0), (0.0, 0.0, 1.0), 1.0, UP)

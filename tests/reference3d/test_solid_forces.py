@@ -85,6 +85,7 @@ def test_joined_rods_may_lean_on_ground():
     np.testing.assert_allclose(solution.reaction("post", 0.0)[3:], 0.0, atol=1e-4)
 
 
+@pytest.mark.slow
 def test_a_bar_between_two_others_passes_on_the_force_and_the_moment_that_press_it():
     rods = tuple(
         bar(name, (start, height, 0.0), (end, height, 0.0))

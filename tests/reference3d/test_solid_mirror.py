@@ -64,7 +64,7 @@ def bars(aside=0.0, load=(10.0, -300.0, 0.0)):
     "scene",
     [
         *(arc(section, (5.0, 20.0, 0.0)) for section in (Rectangle(4.0, 3.0), Circle(4.0), Ring(4.0, 2.0))),
-        bars(),
+        pytest.param(bars(), marks=pytest.mark.slow),
     ],
     ids=["rectangle", "circle", "ring", "contact"],
 )
@@ -101,8 +101,8 @@ def turned(scene):
         arc(Rectangle(4.0, 3.0), (5.0, 20.0, 1.0)),
         turned(arc(Rectangle(4.0, 3.0), (5.0, 20.0, 0.0))),
         replace(arc(Box(4.0, 3.0, 0.5), (0.0, 0.0, 0.0)), loads=(SectionMoment("arc", ARC.length, (1.0, 0.0, 0.0)),)),
-        bars(aside=0.5),
-        bars(load=(0.0, -300.0, 1.0)),
+        pytest.param(bars(aside=0.5), marks=pytest.mark.slow),
+        pytest.param(bars(load=(0.0, -300.0, 1.0)), marks=pytest.mark.slow),
     ],
     ids=["force aside", "clamp turned", "moment about the plane", "rod aside", "contact and force aside"],
 )

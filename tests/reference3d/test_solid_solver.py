@@ -148,6 +148,7 @@ def test_the_twisted_beam_of_macneal_and_harder(force, expected):
     assert found == pytest.approx(expected, rel=1e-4)
 
 
+@pytest.mark.slow
 def test_one_turn_of_a_spring_gives_way_as_its_wire_twists():
     """R^2 l / (G J), the force on the axis; A. M. Wahl, Mechanical Springs, 1963."""
     radius, wire, pitch = 50.0, 5.0, 12.0

@@ -61,7 +61,10 @@ def test_everything_that_a_file_says_stands_in_a_table() -> None:
         assert said in cells
 
 
-@pytest.mark.parametrize("name", [CASE, "bar-lifting-off-a-bed", "crossed-cantilevers", "three-leaf-spring"])
+@pytest.mark.parametrize(
+    "name",
+    [CASE, "bar-lifting-off-a-bed", pytest.param("crossed-cantilevers", marks=pytest.mark.slow), "three-leaf-spring"],
+)
 def test_expected_unknowns_are_about_those_of_the_solutions(name: str) -> None:
     case = load_case(name)
 

@@ -7,7 +7,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-import pyvista
+
+# Names alone: where pytest finds the module and looks for fixtures in it, pyvista loads matplotlib.
+from pyvista import CellType, PolyData, UnstructuredGrid, read
 
 import reference3d
 import rodmodel
@@ -64,12 +66,12 @@ def solution(request: pytest.FixtureRequest) -> Solution:
 
 
 @pytest.fixture
-def bodies(solution: Solution, tmp_path: Path) -> pyvista.UnstructuredGrid:
-    return pyvista.read(write_fields(solution, tmp_path / "fields.vtu")[0])
+def bodies(solution: Solution, tmp_path: Path) -> UnstructuredGrid:
+    return read(write_fields(solution, tmp_path / "fields.vtu")[0])
 
 
-def test_elements_fill_the_volume_of_the_rods(solution: Solution, bodies: pyvista.UnstructuredGrid) -> None:
-    assert set(bodies.celltypes) == {pyvista.CellType.TRIQUADRATIC_HEXAHEDRON}
+def test_elements_fill_the_volume_of_the_rods(solution: Solution, bodies: UnstructuredGrid) -> None:
+    assert set(bodies.celltypes) == {CellType.TRIQUADRATIC_HEXAHEDRON}
     volume = bodies.compute_cell_sizes()["Volume"]
 
     assert volume.min() > 0.0
@@ -79,13 +81,11 @@ def test_elements_fill_the_volume_of_the_rods(solution: Solution, bodies: pyvist
     )
 
 
-def test_the_displacement_between_nodes_is_that_of_the_solution(
-    solution: Solution, bodies: pyvista.UnstructuredGrid
-) -> None:
+def test_the_displacement_between_nodes_is_that_of_the_solution(solution: Solution, bodies: UnstructuredGrid) -> None:
     for rod in solution.scene.rods:
         station = np.linspace(0.03, 0.97, 23) * rod.length  # not where nodes are
         expected = solution.displacement(rod.name, station).T
-        points = pyvista.PolyData(solution.frame(rod.name, station)[0].T)
+        points = PolyData(solution.frame(rod.name, station)[0].T)
 
         found = points.sample(bodies.extract_cells(bodies["rod"] == solution.scene.rods.index(rod)))
 
@@ -104,7 +104,7 @@ def in_section(solution: Solution, position: np.ndarray) -> np.ndarray:
     return np.stack([50.0 - np.hypot(along, up), across, 50.0 * np.arctan2(up, along)])
 
 
-def test_stress_is_in_global_axes_in_the_order_of_vtk(solution: Solution, bodies: pyvista.UnstructuredGrid) -> None:
+def test_stress_is_in_global_axes_in_the_order_of_vtk(solution: Solution, bodies: UnstructuredGrid) -> None:
     first = bodies.extract_cells(bodies["rod"] == 0)
     places = in_section(solution, np.asarray(first.points, dtype=float))
     inner = first.cells.reshape(-1, 28)[:, 27]  # the middle of every element, where no others meet
@@ -128,12 +128,12 @@ def test_forces_and_gaps_of_contact_stand_beside_the_bodies(tmp_path: Path) -> N
     bodies, contact = write_fields(solution, tmp_path / "fields.vtu")
 
     assert contact == tmp_path / "fields-contact.vtu"
-    points, known = pyvista.read(contact), solution.contact_points("touch")
+    points, known = read(contact), solution.contact_points("touch")
     assert points["force"].sum(axis=0) == pytest.approx(known.normal @ known.force)
     assert points["gap"] == pytest.approx(known.gap)
     profile = solution.contact_profile("touch")
     assert points["pressure"].max() == pytest.approx(max(profile.middle.max(), profile.outer.max()))
-    assert pyvista.read(bodies)["rod"].max() == 1
+    assert read(bodies)["rod"].max() == 1
 
 
 def test_a_scene_without_contact_has_no_file_of_it(tmp_path: Path) -> None:

@@ -64,16 +64,19 @@ def test_the_result_comes_back_from_another_process_with_its_progress(work: Modu
     assert told == ["halfway"]
 
 
+@pytest.mark.slow
 def test_an_exception_is_told_in_one_line_with_its_place(work: ModuleType) -> None:
     with pytest.raises(ProcessFailed, match=r"^ValueError: no such thing \(work_of_the_test.py, line \d+\)$"):
         in_own_process(work.fail, 0)
 
 
+@pytest.mark.slow
 def test_a_process_that_ends_is_a_failure_and_not_a_wait(work: ModuleType) -> None:
     with pytest.raises(ProcessFailed, match="exit code 3"):
         in_own_process(work.die, 0)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("when", ["killed", "killed_in_the_middle_of_a_message"])
 def test_a_killed_process_says_so(work: ModuleType, when: str) -> None:
     with pytest.raises(ProcessFailed, match="killed"):

@@ -30,7 +30,7 @@ from reports.stability.two_bars import FORCE, beam_theory
 from reports.stability.wording import number, share
 from rodmodel.section import STRAIGHT, Fields, section_stiffness
 
-# Values that show what each sweep claims, in little time; those that take more than about two seconds are slow.
+# Values that show what each sweep claims, in little time; those that take about a second or more are slow.
 QUICK: dict[str, tuple[float, ...]] = {
     "Slenderness": (10.0, 1e3, 1e4),
     "Incompressibility": (0.3, 0.4999),
@@ -46,7 +46,7 @@ QUICK: dict[str, tuple[float, ...]] = {
     "Edge inside an element": (0.0, 1.0, 4.0, 17.0),
     "Contact patch test": (2.0, 3.0),
 }
-SLOW = ("Border search", "Contact patch test", "Incompressibility")
+SLOW = ("Border search", "Contact patch test", "Curvature", "Incompressibility", "Load reversals")
 ALL = [pytest.param(each, id=each.name, marks=pytest.mark.slow if each.name in SLOW else ()) for each in SWEEPS]
 
 

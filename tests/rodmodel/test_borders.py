@@ -28,6 +28,7 @@ def placed(scene: Scene, edges: list[Edge], positions: list[float]) -> dict[str,
 BOTH = [Edge("overlap", 0, -1), Edge("overlap", 0, 1)]
 
 
+@pytest.mark.slow
 @given(places=st.lists(st.floats(201.0, 299.0), min_size=1, max_size=7, unique=True), data=st.data())
 def test_edges_take_the_borders_that_move_least_in_all(places: list[float], data: st.DataObject) -> None:
     """Of all choices of as many borders in their order."""

@@ -33,6 +33,7 @@ def test_forces_push_gaps_stay_open_and_one_of_them_is_zero(seed: int, n: int, r
     assert np.abs(force * opening).max() < 1e-7 * scale * max(force.max(), 1.0)
 
 
+@pytest.mark.slow
 @settings(max_examples=200, deadline=None, derandomize=True)
 @given(seed=st.integers(0, 10**6), n=st.integers(1, 40), more=st.integers(2, 20))
 def test_multipliers_leave_no_penetration(seed: int, n: int, more: int) -> None:

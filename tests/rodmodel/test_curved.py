@@ -122,7 +122,9 @@ HOOK = rm.Path(
     ("line", "curve", "end"),
     [
         pytest.param(spline_through(ellipse, np.pi / 2, 33), ellipse, np.pi / 2, id="spline along an ellipse"),
-        pytest.param(spline_through(coil, 5.0, 65), coil, 5.0, id="spline along a widening coil"),
+        pytest.param(
+            spline_through(coil, 5.0, 65), coil, 5.0, id="spline along a widening coil", marks=pytest.mark.slow
+        ),
         pytest.param(HOOK, hook, 80.0 + 25.0 * np.pi + 60.0, id="path"),
     ],
 )

@@ -127,6 +127,7 @@ def test_a_cantilever_pressed_on_a_cylinder_bends_with_it() -> None:
     assert points.force[inside].sum() < 0.02 * points.force.sum()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("radius", [200.0, 2000.0])
 def test_a_force_concentrated_on_a_cylinder_is_found_on_coarse_elements(radius: float) -> None:
     """A border search has nothing to follow there; the natural borders with more at the contact answer as fine ones."""

@@ -74,10 +74,15 @@ def require_same(found: Solution, own: Solution) -> None:
     ("change", "values"),
     [
         # two moving edges; then the corner touches; then no more than the corner, where no border moves
-        pytest.param(with_modulus, np.array([20e3, 24e3, 28e3, 45e3, 50e3, 55e3, 100e3, 150e3, 200e3]), id="modulus"),
+        pytest.param(
+            with_modulus,
+            np.array([20e3, 24e3, 28e3, 45e3, 50e3, 55e3, 100e3, 150e3, 200e3]),
+            id="modulus",
+            marks=pytest.mark.slow,
+        ),
         pytest.param(with_gap, np.linspace(0.0, 0.3, 6), id="gap"),
         # too little to close the gap at first
-        pytest.param(with_load, np.linspace(50.0, 2000.0, 6), id="load"),
+        pytest.param(with_load, np.linspace(50.0, 2000.0, 6), id="load", marks=pytest.mark.slow),
         # other elements for every value
         pytest.param(with_height, np.array([14.8, 14.9, 15.0]), id="section"),
     ],

@@ -185,6 +185,7 @@ def joined():
 # Largest differences, of the largest value: bricks with 20 nodes and reduced integration against 27 nodes on one mesh.
 # Forces on sections that are held inside a rod follow the mesh, by 5e-3 to the next finer one. The axes of the arc's
 # wood turn in steps from layer to layer, which makes 1.6e-2, and a quarter of that on the next finer mesh.
+@pytest.mark.slow
 @with_ccx
 @pytest.mark.parametrize(
     ("scene", "tolerance", "of_reactions"), [(cantilever(), 2e-4, 1e-5), (askew(), 2e-4, 2e-3), (joined(), 2e-2, 1e-5)]

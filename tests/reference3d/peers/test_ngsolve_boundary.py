@@ -12,6 +12,7 @@ from reference3d.peers.ngsolve_tuned import TUNED
 pytestmark = pytest.mark.skipif(installed() != "", reason="NGSolve is not installed")
 
 
+@pytest.mark.slow
 def test_its_energy_of_penetration_gives_the_forces_of_the_active_set():
     from reference3d.peers.ngsolve_boundary import solve_with_contact_boundary
 

@@ -73,6 +73,7 @@ def test_several_cases_make_the_table_of_choices_and_one_that_failed_is_a_senten
     assert shown.err == "rodcheck: two-cantilevers-e20-g05: It broke.\n"
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("solved")
 def test_the_report_has_charts_unless_told_otherwise(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]

@@ -90,6 +90,7 @@ def solved(case_run: CaseRun, monkeypatch: pytest.MonkeyPatch) -> CaseRun:
     return replace(case_run, sizes=(6.0, 3.0, 2.0))
 
 
+@pytest.mark.slow
 def test_a_measurement_is_kept_and_says_when_it_was_made(
     solved: CaseRun, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

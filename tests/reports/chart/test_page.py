@@ -85,6 +85,7 @@ def test_numbers_stand_beside_the_page(page: str, chart: Chart, case_run: CaseRu
     assert page
 
 
+@pytest.mark.slow
 def test_the_report_has_the_chart_of_a_case_that_has_one(chart: Chart, case_run: CaseRun) -> None:
     pictures = {case_run.case.name: site.DrawnPicture("iVBORw0KGgo=", 1800, 700, "10", "")}
     hostile = replace(chart, notes=("<script>alert(1)</script>",))

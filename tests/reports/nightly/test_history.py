@@ -52,6 +52,7 @@ def test_the_latest_are_counted_for_everything_by_itself(tmp_path: Path, row: Ro
     assert [(each.of, each.time.day) for each in found] == [("early", 1), ("overlap", 2), ("overlap", 3)]
 
 
+@pytest.mark.slow
 def test_a_damaged_byte_anywhere_is_noticed_and_the_file_named_and_left(tmp_path: Path, row: RowMaker) -> None:
     path = write_run(tmp_path, [row()])
     write_run(tmp_path, [row(1)])
