@@ -205,9 +205,9 @@ def measure(case: Case, _progress: Progress, stations: Mapping[str, Array], enou
     notes: list[str] = []
     rods = list(_rod_configurations(case))
     others = [*_beam_configurations(case, notes), *_ngsolve_configurations(case, stations, notes)]
-    # what is loaded and computed once a process belongs to none of them
-    for first in {each.method: each for each in (*rods, *others)}.values():
-        first.run()
+    # what is loaded and computed once a process belongs to none of them: the last of a method is among its richest
+    for last in {each.method: each for each in (*rods, *others)}.values():
+        last.run()
     left_out = run_in_turn([*others, *rods], enough)
     if left_out:
         notes.append(

@@ -193,14 +193,11 @@ def references_of(scene: Scene, meshes: Sequence[Quantities], extrapolate: Extra
         for pair in scene.contacts
         if not pair.on_bed and (where := _singular_at(meshes[-1].contact(pair.name)))
     }
-    wanted: list[Charted] = ["largest_deflection"]
-    wanted[:0] = ["contact_force"] if scene.contacts else []
-    wanted += ["contact_edges"] if scene.contacts else []
-    wanted += ["clamp_moment"] if _clamps(scene) else []
-    wanted += ["peak_pressure"] if scene.contacts else []
     found: dict[Charted, Reference] = {}
-    for quantity in wanted:
+    for quantity in TITLES:
         names = [of for kind, of in each[-1] if kind == quantity]
+        if not names:
+            continue
         reasons = []
         if quantity == "peak_pressure" and singular:
             names = [name for name in names if name not in singular]
