@@ -42,14 +42,6 @@ def node_grids(solution: Solution | SolidSolution) -> dict[str, NodeGrid]:
     }
 
 
-def nodal_pressure(solution: Solution | SolidSolution, pair: str) -> Array:
-    """Contact pressure at the points of `contact_points`, MPa, shape (n,)."""
-    if isinstance(solution, Solution):
-        return solution.pairs[pair].pressure.ravel()
-    found = solution.pairs[pair]
-    return np.asarray(found.force / found.contact.area)
-
-
 def _of_solid(found: SolidRod) -> NodeGrid:
     body = found.body
     moved = np.einsum("pnc,pcg->png", found.nodal, body.axes)

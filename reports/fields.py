@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import rodmodel
-from reference3d.node_grids import NodeGrid, nodal_pressure, node_grids
+from reference3d.node_grids import NodeGrid, node_grids
 from reference3d.own_mesh import OwnMeshSolution
 from reference3d.own_mesh.solution import OwnRod
 from reference3d.quadratic import line_nodes
@@ -170,15 +170,13 @@ def von_mises(stress: Array) -> Array:
 
 def _contacts(solution: Solution) -> meshio.Mesh:
     """Points of contact on the first faces."""
-    names = [pair.name for pair in solution.scene.contacts]
-    found = [solution.contact_points(name) for name in names]
+    found = [solution.contact_points(pair.name) for pair in solution.scene.contacts]
     position = np.hstack([points.position for points in found]).T
     data = {
         "gap": np.concatenate([points.gap for points in found]),
         "force": np.hstack([points.normal * points.force for points in found]).T,
+        "pressure": np.concatenate([points.pressure for points in found]),
     }
-    if isinstance(solution, BoxSolution | SolidSolution):
-        data["pressure"] = np.concatenate([nodal_pressure(solution, name) for name in names])
     number = np.repeat(np.arange(len(found)), [len(points.force) for points in found])
     cells = [("vertex", np.arange(len(position))[:, None])]
     return meshio.Mesh(position, cells, point_data=data, cell_data={"pair": [number]})

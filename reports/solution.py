@@ -27,6 +27,7 @@ class ContactPoints(Protocol):
     gap : d, distance of the faces after deformation (negative: penetration), mm, shape (n,)
     force : compressive contact force carried by the point, N, never negative, shape (n,); it acts along
         -normal on the first rod and +normal on the second
+    pressure : force over the point's share of the face, MPa, shape (n,)
     """
 
     @property
@@ -37,6 +38,8 @@ class ContactPoints(Protocol):
     def gap(self) -> Array: ...
     @property
     def force(self) -> Array: ...
+    @property
+    def pressure(self) -> Array: ...
 
 
 class ContactProfile(Protocol):

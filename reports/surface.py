@@ -17,7 +17,7 @@ from cases.scene import ContactPair, Polygon, Rod
 from reports.geometry import stations_of_points
 from reports.quantities import default_stations
 from reports.sections import outlines
-from reports.solution import Array, ContactPoints, Solution
+from reports.solution import Array, Solution
 
 IntArray = NDArray[np.int64]
 
@@ -27,24 +27,11 @@ STEPS = 6
 MOST_SECTIONS = 160
 
 
-class PressurePoints(ContactPoints, Protocol):
-    """Contact points that also tell their pressure, MPa, shape (n,)."""
-
-    @property
-    def pressure(self) -> Array:
-        """Pressure of every point."""
-        ...
-
-
 class SurfaceSolution(Solution, Protocol):
-    """A solution that can be asked for its displacement anywhere, and for the pressure of its contact points."""
+    """A solution that can be asked for its displacement anywhere."""
 
     def displacement_at(self, rod: str, points: Array) -> Array:
         """Displacement at (x, y, s), global components, mm; shape (3, n) to (3, n)."""
-        ...
-
-    def contact_points(self, pair: str) -> PressurePoints:
-        """State of every contact point of the pair."""
         ...
 
 

@@ -136,6 +136,16 @@ def test_forces_and_gaps_of_contact_stand_beside_the_bodies(tmp_path: Path) -> N
     assert read(bodies)["rod"].max() == 1
 
 
+def test_the_rod_models_contact_points_tell_their_pressure_too(tmp_path: Path) -> None:
+    solution = SOLVED["rod model, bars"]()
+
+    points = read(write_fields(solution, tmp_path / "fields.vtu")[1])
+
+    known = solution.contact_points("touch")
+    assert known.pressure.max() > 0.0
+    assert points["pressure"] == pytest.approx(known.pressure)
+
+
 def test_a_scene_without_contact_has_no_file_of_it(tmp_path: Path) -> None:
     assert write_fields(SOLVED["rod model, ring"](), tmp_path / "ring.vtu") == (tmp_path / "ring.vtu",)
     assert [path.name for path in tmp_path.iterdir()] == ["ring.vtu"]
