@@ -2,9 +2,14 @@
 
 from __future__ import annotations
 
+import ctypes
+import signal
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from typing import Any
+
+# Bytes that hold a `struct sigaction` of any system.
+SIGACTION = 1024
 
 
 @contextmanager
@@ -19,7 +24,8 @@ def new_model(name: str, options: Mapping[str, float]) -> Iterator[Any]:
 
     started_here = not gmsh.isInitialized()
     if started_here:
-        gmsh.initialize(interruptible=False)
+        with sigpipe_kept():
+            gmsh.initialize(interruptible=False)
     wanted = {"General.Terminal": 0.0, **options}
     before, current = {each: gmsh.option.getNumber(each) for each in wanted}, gmsh.model.getCurrent()
     try:
@@ -34,3 +40,22 @@ def new_model(name: str, options: Mapping[str, float]) -> Iterator[Any]:
             gmsh.option.setNumber(each, value)
         if started_here:
             gmsh.finalize()
+
+
+@contextmanager
+def sigpipe_kept() -> Iterator[None]:
+    """What a write to a pipe without a reader does stays as it was: for Python, an exception.
+
+    Initialising gmsh sets SIGPIPE to the system's default, which is to end the whole process without a word.
+    """
+    if not hasattr(signal, "SIGPIPE"):
+        yield
+        return
+    # Python's own module may set handlers in the main thread alone, and meshes are made in others, too.
+    sigaction = ctypes.CDLL(None).sigaction
+    before = ctypes.create_string_buffer(SIGACTION)
+    sigaction(signal.SIGPIPE, None, before)
+    try:
+        yield
+    finally:
+        sigaction(signal.SIGPIPE, before, None)

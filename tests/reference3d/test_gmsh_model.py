@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import os
+import subprocess
+import sys
 from collections.abc import Iterator
 from contextlib import nullcontext
 
 import gmsh
 import pytest
 
-from reference3d.gmsh_model import new_model
+from reference3d.gmsh_model import new_model, sigpipe_kept
 
 OPTIONS = {"Mesh.Algorithm": 8.0}
 
@@ -16,7 +19,8 @@ OPTIONS = {"Mesh.Algorithm": 8.0}
 @pytest.fixture
 def own() -> Iterator[str]:
     """A model of the caller's, with a point in it."""
-    gmsh.initialize(["", "-v", "0"], interruptible=False)
+    with sigpipe_kept():
+        gmsh.initialize(["", "-v", "0"], interruptible=False)
     gmsh.model.add("own")
     gmsh.model.geo.addPoint(0.0, 0.0, 0.0)
     gmsh.model.geo.synchronize()
@@ -47,3 +51,29 @@ def test_gmsh_that_was_not_at_work_is_not_afterwards() -> None:
         assert gmsh.isInitialized()
 
     assert not gmsh.isInitialized()
+
+
+@pytest.mark.skipif(os.name != "posix", reason="there are no such signals")
+@pytest.mark.parametrize("thread", [False, True])
+def test_a_write_to_a_pipe_that_nobody_reads_is_an_exception_after_a_mesh_as_before(thread: bool) -> None:
+    code = f"""
+import os, threading
+from reference3d.gmsh_model import new_model
+
+def mesh():
+    with new_model("mesh", {{}}):
+        pass
+
+made = threading.Thread(target=mesh) if {thread} else None
+made.start() if made else mesh()
+made.join() if made else None
+reading, writing = os.pipe()
+os.close(reading)
+try:
+    os.write(writing, b"x")
+except BrokenPipeError:
+    print("told")
+"""
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+
+    assert (done.returncode, done.stdout) == (0, "told\n"), done.stderr

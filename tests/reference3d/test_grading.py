@@ -6,7 +6,8 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from cases.scene import GapTable, Line, RodFace
+from cases.loader import load_case
+from cases.scene import GapTable, Line, LineLoad, RodFace, SectionForce
 from reference3d.grading import rod_borders
 
 
@@ -23,14 +24,37 @@ def test_supports_loads_and_zone_ends_are_borders(scene, rod, places):
         assert np.abs(borders - place).min() < 1e-9
 
 
-def test_parallel_rods_have_matching_nodes_in_the_zone(scene):
-    lower, upper = (rod_borders(scene, rod, 2, symmetric=True) for rod in scene.rods)
+@pytest.mark.parametrize(
+    "more",
+    [
+        (),
+        (SectionForce("lower", 249.3, (0.0, -1.0, 0.0)),),
+        (LineLoad("upper", 31.0, 77.7, (0.0, -1.0, 0.0)), SectionForce("upper", 50.0, (0.0, 1.0, 0.0))),
+    ],
+    ids=["nothing in the zone", "force on the first rod", "loads on the second rod"],
+)
+@pytest.mark.parametrize("refinement", [1, 3])
+def test_parallel_rods_have_matching_nodes_in_the_zone(scene, more, refinement):
+    loaded = replace(scene, loads=(*scene.loads, *more))
+
+    lower, upper = (rod_borders(loaded, rod, refinement, symmetric=True) for rod in loaded.rods)
 
     in_lower = lower.s[lower.s > 200.0 - 1e-9] - 200.0
     in_upper = upper.s[upper.s < 100.0 + 1e-9]
-
     np.testing.assert_allclose(in_lower, in_upper, atol=1e-9)
     np.testing.assert_array_equal(lower.x, upper.x)
+
+
+def test_nodes_meet_nodes_through_a_stack_of_rods():
+    """The force on the uppermost bar, 30 mm into both zones, is a border of the lowest, which is drawn backwards."""
+    scene = load_case("bar-between-two-others").scene
+
+    lower, middle, upper = (rod_borders(scene, rod, 2, symmetric=True).s for rod in scene.rods)
+
+    stack = 60.0 + middle[middle < 60.0 + 1e-9]
+    np.testing.assert_allclose(np.sort(120.0 - lower)[-len(stack) :], stack, atol=1e-9)
+    np.testing.assert_allclose(upper[-len(stack) :], stack, atol=1e-9)
+    assert np.abs(stack - 90.0).min() < 1e-9
 
 
 def test_refinement_divides_every_coarse_cell(scene):

@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from pathlib import Path
 
-import gmsh
 import pytest
+
+from reference3d.gmsh_model import new_model
 
 Box = tuple[float, float, float, float, float, float]
 # whether an element is a hexahedron, its order, and whether it has nodes in its faces
@@ -21,9 +22,13 @@ KINDS = {
 
 def _mesh(path: Path, bars: dict[str, Box], kind: str, size: float) -> Path:
     hexahedra, order, complete = KINDS[kind]
-    gmsh.initialize(["", "-v", "0"], interruptible=False)
-    try:
-        gmsh.option.setNumber("General.Terminal", 0)
+    options = {
+        "Mesh.MeshSizeMin": size,
+        "Mesh.MeshSizeMax": size,
+        "Mesh.ElementOrder": order,
+        "Mesh.SecondOrderIncomplete": 0 if complete else 1,
+    }
+    with new_model("bars", options) as gmsh:
         for name, (x0, x1, y0, y1, z0, z1) in bars.items():
             volume = gmsh.model.occ.addBox(x0, y0, z0, x1 - x0, y1 - y0, z1 - z0)
             gmsh.model.occ.synchronize()
@@ -49,14 +54,8 @@ def _mesh(path: Path, bars: dict[str, Box], kind: str, size: float) -> Path:
                     gmsh.model.mesh.setRecombine(2, face)
             if hexahedra:
                 gmsh.model.mesh.setTransfiniteVolume(volume)
-        gmsh.option.setNumber("Mesh.MeshSizeMin", size)
-        gmsh.option.setNumber("Mesh.MeshSizeMax", size)
-        gmsh.option.setNumber("Mesh.ElementOrder", order)
-        gmsh.option.setNumber("Mesh.SecondOrderIncomplete", 0 if complete else 1)
         gmsh.model.mesh.generate(3)
         gmsh.write(str(path))
-    finally:
-        gmsh.finalize()
     return path
 
 
