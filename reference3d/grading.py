@@ -1,7 +1,7 @@
 """Where the borders of a rod's elements lie: graded towards clamps, loads and the ends of contact zones.
 
 A rod is first divided into coarse cells, whose lengths grow linearly away from the places that need short
-ones. Refinement k divides every coarse cell into k along each axis, so that meshes of different k are systematically
+ones. Within a contact zone these are the same for both rods, so that nodes meet nodes. Refinement k divides every coarse cell into k along each axis, so that meshes of different k are systematically
 refined: element sizes fall as 1 / k. Next to places where stress is singular, and towards the faces of a section, cells
 are not divided equally: borders lie at (j / k)^q of the distance, which gives quadratic elements back what a
 singularity r^lambda takes from their order, 2 q lambda instead of 2 lambda (I. Babuska, R. B. Kellogg, J. Pitkaranta,
@@ -16,7 +16,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from cases.scene import ContactPair, GapTable, LineLoad, Rod, Scene
+from cases.scene import ContactPair, GapTable, LineLoad, Rod, RodFace, Scene
 from reference3d.frames import pair_overlap
 from reference3d.scope import clamps, forces, on_bed, rectangle
 
@@ -68,46 +68,80 @@ def rod_borders(scene: Scene, rod: Rod, refinement: int, symmetric: bool) -> Bor
     """
     section = rectangle(rod)
     side = min(section.width, section.height)
-    breaks: dict[float, float] = {0.0: LARGEST_CELL * side, rod.length: LARGEST_CELL * side}
+    largest = LARGEST_CELL * side
+    breaks = {place: min(size, largest) for place, size in _breaks(scene)[rod.name].items()}
     across: dict[str, list[float]] = {"x": [], "y": []}
     zones: list[_Zone] = []
-
-    def add(position: float, size: float) -> None:
-        near = next((place for place in breaks if abs(place - position) < 1e-7 * rod.length), position)
-        breaks[near] = min(size, breaks.get(near, np.inf))
-
-    for clamp in clamps(scene):
-        if clamp.rod == rod.name:
-            add(0.0 if clamp.end == "start" else rod.length, CLAMP_CELL * side)
-    for load in forces(scene):
-        if load.rod != rod.name:
-            continue
-        if isinstance(load, LineLoad):
-            add(load.start, LARGEST_CELL * side)
-            add(load.end, LARGEST_CELL * side)
-        else:
-            add(load.position, LOAD_CELL * side)
     for pair in scene.contacts:
         overlap = pair_overlap(scene, pair)
-        on_second = overlap.sign[0], overlap.shift[0]
-        sides = (overlap.first, (1.0, 0.0)), (overlap.second, on_second)
-        for face, (opposite, (sign, shift)) in zip(pair.faces, sides, strict=False):
-            if face.rod != rod.name:
-                continue
-            sections = [rectangle(scene.rod(each.rod)) for each in pair.faces]
-            smaller = min(min(each.width, each.height) for each in sections)
-            at_ends, within = (BED_CELL, BED_CELL) if on_bed(pair) else (ZONE_END_CELL, ZONE_CELL)
-            for place in opposite[0]:
-                add(place, at_ends * smaller)
-            for place in gap_kinks(pair, *overlap.first[0]):
-                add(sign * place + shift, within * smaller)
-            zones.append(_Zone(*opposite[0], within * smaller))
-            across["x" if face.face in ("top", "bottom") else "y"] += opposite[1]
+        for face, opposite in zip(pair.faces, (overlap.first, overlap.second), strict=False):
+            if face.rod == rod.name:
+                zones.append(_Zone(*opposite[0], _zone_cells(scene, pair)[1]))
+                across["x" if face.face in ("top", "bottom") else "y"] += opposite[1]
     return Borders(
         x=across_borders(section.width, across["x"], side, refinement, symmetric),
         y=across_borders(section.height, across["y"], side, refinement, False),
-        s=_along(breaks, zones, LARGEST_CELL * side, refinement),
+        s=_along(breaks, zones, largest, refinement),
     )
+
+
+def _zone_cells(scene: Scene, pair: ContactPair) -> tuple[float, float]:
+    """Lengths of coarse cells at the ends of a pair's zone and within it, mm."""
+    sections = [rectangle(scene.rod(face.rod)) for face in pair.faces]
+    smaller = min(min(section.width, section.height) for section in sections)
+    at_ends, within = (BED_CELL, BED_CELL) if on_bed(pair) else (ZONE_END_CELL, ZONE_CELL)
+    return at_ends * smaller, within * smaller
+
+
+def _breaks(scene: Scene) -> dict[str, dict[float, float]]:
+    """Where each rod needs a border, mm, and the length of the cells that begin there: endless where any will do.
+
+    What one rod needs within a contact zone the other gets, too, so that nodes meet nodes: where meshes of two faces
+    differ, contact errs in single pressures (`contact`).
+    """
+    breaks = {rod.name: {0.0: np.inf, rod.length: np.inf} for rod in scene.rods}
+
+    def add(rod: str, position: float, size: float = np.inf) -> bool:
+        """Note a place; whether it is new, or its cells are shorter than they were."""
+        own, same = breaks[rod], 1e-7 * scene.rod(rod).length
+        near = next((place for place in own if abs(place - position) < same), None)
+        if near is not None and own[near] <= size:
+            return False
+        own[position if near is None else near] = size
+        return True
+
+    sides = {rod.name: min(rectangle(rod).width, rectangle(rod).height) for rod in scene.rods}
+    for clamp in clamps(scene):
+        end = 0.0 if clamp.end == "start" else scene.rod(clamp.rod).length
+        add(clamp.rod, end, CLAMP_CELL * sides[clamp.rod])
+    for load in forces(scene):
+        if isinstance(load, LineLoad):
+            add(load.rod, load.start)
+            add(load.rod, load.end)
+        else:
+            add(load.rod, load.position, LOAD_CELL * sides[load.rod])
+    ways = []
+    for pair in scene.contacts:
+        overlap = pair_overlap(scene, pair)
+        at_ends, within = _zone_cells(scene, pair)
+        for face, opposite in zip(pair.faces, (overlap.first, overlap.second), strict=False):
+            for place in opposite[0]:
+                add(face.rod, place, at_ends)
+        for place in gap_kinks(pair, *overlap.first[0]):
+            add(pair.first.rod, place, within)
+        if isinstance(pair.second, RodFace):
+            sign, shift = float(overlap.sign[0]), float(overlap.shift[0])
+            first, second = pair.first.rod, pair.second.rod
+            ways.append((first, second, overlap.first[0], sign, shift))
+            ways.append((second, first, overlap.second[0], sign, -sign * shift))
+    passed_on = True
+    while passed_on:  # through all of a stack of rods
+        passed_on = False
+        for rod, other, (start, end), sign, shift in ways:
+            for place, size in list(breaks[rod].items()):
+                if start < place < end:
+                    passed_on |= add(other, sign * place + shift, size)
+    return breaks
 
 
 def gap_kinks(pair: ContactPair, start: float, end: float) -> list[float]:
