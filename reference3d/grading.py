@@ -1,11 +1,11 @@
 """Where the borders of a rod's elements lie: graded towards clamps, loads and the ends of contact zones.
 
-A rod is first divided into coarse cells, whose lengths grow linearly away from the places that need short
-ones. Within a contact zone these are the same for both rods, so that nodes meet nodes. Refinement k divides every coarse cell into k along each axis, so that meshes of different k are systematically
-refined: element sizes fall as 1 / k. Next to places where stress is singular, and towards the faces of a section, cells
-are not divided equally: borders lie at (j / k)^q of the distance, which gives quadratic elements back what a
-singularity r^lambda takes from their order, 2 q lambda instead of 2 lambda (I. Babuska, R. B. Kellogg, J. Pitkaranta,
-Numerische Mathematik 33 (1979) 447-471).
+A rod is first divided into coarse cells, whose lengths grow linearly away from the places that need short ones. Within
+a contact zone these are the same for both rods, so that nodes meet nodes. Refinement k divides every coarse cell into k
+along each axis, so that meshes of different k are systematically refined: element sizes fall as 1 / k. Next to places
+where stress is singular, and towards the faces of a section, cells are not divided equally: borders lie at (j / k)^q of
+the distance, which gives quadratic elements back what a singularity r^lambda takes from their order, 2 q lambda instead
+of 2 lambda (I. Babuska, R. B. Kellogg, J. Pitkaranta, Numerische Mathematik 33 (1979) 447-471).
 """
 
 from __future__ import annotations
