@@ -475,10 +475,10 @@ def report(
     runs = _run_all(loaded, results, not no_peers)
     runs = runs if no_charts else _charted(runs, results)
     outcomes = None if cases else _verification_outcomes(results)
-    verification = None if outcomes is None else _write_verification(outcomes, output)
-    performance = None if cases else _write_performance(output)
+    verification = None if outcomes is None else _write_verification(outcomes, output, in_report=True)
+    performance = None if cases else _write_performance(output, in_report=True)
     sweeps = None if cases else _stability(results)
-    stability = None if sweeps is None else _write_stability(sweeps, output)
+    stability = None if sweeps is None else _write_stability(sweeps, output, in_report=True)
     chosen = None if cases or no_charts else _write_choices(runs, output)
     made = [page.name for page in (verification, performance, stability) if page is not None]
     pages = made if chosen is None else [*made, chosen.name]
@@ -721,7 +721,7 @@ def verify(*, output: Path = Path("report")) -> int:
     from reports.verification.registry import GROUPS
     from reports.verification.table import print_verification
 
-    page = _write_verification(outcomes, output)
+    page = _write_verification(outcomes, output, in_report=_has_overview(output))
     print_verification(GROUPS, outcomes)
     print(page)
     return 0 if all(outcome.verdict == "pass" for outcome in outcomes.values()) else NOT_PASSED
@@ -737,7 +737,7 @@ def performance(*, output: Path = Path("report")) -> int:
         folder for performance.html
     """
     _require_folder(output)
-    page = _write_performance(output, aloud=True)
+    page = _write_performance(output, in_report=_has_overview(output), aloud=True)
     if page is None:
         return NOT_PASSED
     print(page)
@@ -759,7 +759,7 @@ def stability(*, output: Path = Path("report")) -> int:
         return NOT_PASSED
     from reports.stability.page import summary
 
-    page = _write_stability(found, output)
+    page = _write_stability(found, output, in_report=_has_overview(output))
     print("\n".join(summary(found)))
     print(page)
     return 0 if found.all_hold else NOT_PASSED
@@ -786,6 +786,10 @@ def schema_case() -> int:
 def _require_folder(output: Path) -> None:
     if output.exists() and not output.is_dir():
         raise InputError(f"--output: found the file {output}; give a folder")
+
+
+def _has_overview(output: Path) -> bool:
+    return (output / "index.html").is_file()
 
 
 def _written(write: Callable[[], Path]) -> Path:
@@ -849,14 +853,14 @@ def _verification_outcomes(cache: Cache | None = None) -> dict[str, Outcome] | N
         return None
 
 
-def _write_verification(outcomes: Mapping[str, Outcome], output: Path) -> Path:
+def _write_verification(outcomes: Mapping[str, Outcome], output: Path, *, in_report: bool) -> Path:
     from reports.verification.page import write_verification
     from reports.verification.registry import GROUPS
 
-    return _written(lambda: write_verification(GROUPS, outcomes, output))
+    return _written(lambda: write_verification(GROUPS, outcomes, output, in_report=in_report))
 
 
-def _write_performance(output: Path, *, aloud: bool = False) -> Path | None:
+def _write_performance(output: Path, *, in_report: bool, aloud: bool = False) -> Path | None:
     """The performance page, measured and written; None, with the reason on standard error, if it cannot be measured.
 
     aloud : whether to print what was found
@@ -871,7 +875,7 @@ def _write_performance(output: Path, *, aloud: bool = False) -> Path | None:
     except ProcessFailed as error:
         print(f"rodcheck: performance: {error}", file=sys.stderr)
         return None
-    page = _written(lambda: write_performance(found, output))
+    page = _written(lambda: write_performance(found, output, in_report=in_report))
     if aloud:
         print("\n".join(summary(found.series, found.breakdown, found.study)))
     return page
@@ -889,10 +893,10 @@ def _stability(cache: Cache | None = None) -> Stability | None:
         return None
 
 
-def _write_stability(found: Stability, output: Path) -> Path:
+def _write_stability(found: Stability, output: Path, *, in_report: bool) -> Path:
     from reports.stability.page import write_stability
 
-    return _written(lambda: write_stability(found, output))
+    return _written(lambda: write_stability(found, output, in_report=in_report))
 
 
 def _write_choices(runs: Sequence[CaseRun | Failure], output: Path) -> Path:

@@ -94,11 +94,14 @@ def peers_summary(runs: Sequence[CaseRun | Failure]) -> tuple[str, ...]:
         if not found:
             sentences.append(f"{peer}: {NOT_ASKED}.")
             continue
-        answered, apart, reasons = 0, [], []
+        answered, refused, apart, reasons = 0, 0, [], []
         for run, each in found:
             if each.answer is None or each.answer.outcome != "converged":
                 why = _why(each).rstrip(".")
-                reasons.append(f"It {why}" if why.startswith("cannot") else why)
+                if why.startswith("cannot"):
+                    refused += 1
+                else:
+                    reasons.append(why)
                 continue
             answered += 1
             for row in run.side_by_side:
@@ -108,6 +111,10 @@ def peers_summary(runs: Sequence[CaseRun | Failure]) -> tuple[str, ...]:
         text = f"{peer} answered {answered} of {len(found)} cases"
         if apart:
             text += f"; contact forces and largest deflections differ from 3D by {100.0 * max(apart):.2g} % at most"
+        if refused:
+            text += (
+                f". It cannot treat {refused} of them, {'whose page says' if refused == 1 else 'whose pages say'} why"
+            )
         sentences.append(". ".join([text, *dict.fromkeys(reasons)]) + ".")
     return tuple(sentences)
 

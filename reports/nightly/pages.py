@@ -62,7 +62,7 @@ def _write_verification(output: Path, cache: Cache | None) -> tuple[Path, list[s
         for name, found in outcomes.items()
         if found.verdict != "pass"
     ]
-    return verification.write_verification(checks.GROUPS, outcomes, output), missed
+    return verification.write_verification(checks.GROUPS, outcomes, output, in_report=True), missed
 
 
 def _write_stability(output: Path, cache: Cache | None) -> tuple[Path, list[str]]:
@@ -71,4 +71,4 @@ def _write_stability(output: Path, cache: Cache | None) -> tuple[Path, list[str]
 
     found = sweeps.carry_out(cache)
     missed = [f"{name}: does not hold" for name, each in found.found.items() if not sweeps.BY_NAME[name].holds(each)]
-    return stability.write_stability(found, output), missed
+    return stability.write_stability(found, output, in_report=True), missed

@@ -1,4 +1,4 @@
-"""The performance page: one self-contained HTML page."""
+"""The performance page."""
 
 from __future__ import annotations
 
@@ -19,8 +19,12 @@ from reports.verification.wording import relative
 FILE_NAME = "performance.html"
 
 
-def write_performance(found: Performance, output: Path) -> Path:
+def write_performance(found: Performance, output: Path, *, in_report: bool = False) -> Path:
     """Write `performance.html` into the folder `output`; returns its path.
+
+    Parameters
+    ----------
+    in_report : whether an overview stands, or will stand, beside it
 
     Raises
     ------
@@ -28,11 +32,11 @@ def write_performance(found: Performance, output: Path) -> Path:
         if the folder or the file cannot be written.
     """
     write_plotly(output)
-    write_whole(output / FILE_NAME, render(found))
+    write_whole(output / FILE_NAME, render(found, in_report=in_report))
     return output / FILE_NAME
 
 
-def render(found: Performance) -> str:
+def render(found: Performance, *, in_report: bool = False) -> str:
     """The page as HTML."""
     figures = {
         "seconds": seconds_figure(found.series),
@@ -64,6 +68,7 @@ def render(found: Performance) -> str:
         orders=sorted({setting.order for setting in found.study.settings}),
         levels_caption=wording.levels_caption(found.study),
         levels_note=wording.levels_note(found.study),
+        in_report=in_report,
     )
 
 

@@ -27,8 +27,12 @@ _MARKS = {
 }
 
 
-def write_stability(stability: Stability, output: Path) -> Path:
+def write_stability(stability: Stability, output: Path, *, in_report: bool = False) -> Path:
     """Write `stability.html` into the folder `output`; returns its path.
+
+    Parameters
+    ----------
+    in_report : whether an overview stands, or will stand, beside it
 
     Raises
     ------
@@ -36,11 +40,11 @@ def write_stability(stability: Stability, output: Path) -> Path:
         if the folder or the file cannot be written.
     """
     write_plotly(output)
-    write_whole(output / FILE_NAME, render(stability))
+    write_whole(output / FILE_NAME, render(stability, in_report=in_report))
     return output / FILE_NAME
 
 
-def render(stability: Stability) -> str:
+def render(stability: Stability, *, in_report: bool = False) -> str:
     """The page as HTML, of the sweeps that were carried out."""
     content, figures = [], {}
     for index, sweep in enumerate((each for each in SWEEPS if each.name in stability.found), start=1):
@@ -57,6 +61,7 @@ def render(stability: Stability) -> str:
         height=HEIGHT,
         seconds=f"{stability.seconds:.0f}",
         kept_since=stability.kept_since,
+        in_report=in_report,
     )
 
 

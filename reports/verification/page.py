@@ -16,8 +16,14 @@ from reports.verification.wording import published, relative, tolerance, uncerta
 FILE_NAME = "verification.html"
 
 
-def write_verification(groups: Sequence[Group], outcomes: Mapping[str, Outcome], output: Path) -> Path:
+def write_verification(
+    groups: Sequence[Group], outcomes: Mapping[str, Outcome], output: Path, *, in_report: bool = False
+) -> Path:
     """Write `verification.html` into the folder `output`; returns its path.
+
+    Parameters
+    ----------
+    in_report : whether an overview stands, or will stand, beside it
 
     Raises
     ------
@@ -25,11 +31,11 @@ def write_verification(groups: Sequence[Group], outcomes: Mapping[str, Outcome],
         if the folder or the file cannot be written.
     """
     write_plotly(output)
-    write_whole(output / FILE_NAME, render(groups, outcomes))
+    write_whole(output / FILE_NAME, render(groups, outcomes, in_report=in_report))
     return output / FILE_NAME
 
 
-def render(groups: Sequence[Group], outcomes: Mapping[str, Outcome]) -> str:
+def render(groups: Sequence[Group], outcomes: Mapping[str, Outcome], *, in_report: bool = False) -> str:
     """The page as HTML; `outcomes` by the checks' names."""
     content, figures = [], {}
     kept_since = next(iter(outcomes.values())).kept_since
@@ -39,7 +45,14 @@ def render(groups: Sequence[Group], outcomes: Mapping[str, Outcome]) -> str:
         figure = error_figure(found)
         figures[f"{anchor}-figure"] = figure
         content.append(_group(group, found, anchor, figure.layout.height))
-    return rendered("verification/page.html.jinja", figures, PLOTLY_FILE, groups=content, kept_since=kept_since)
+    return rendered(
+        "verification/page.html.jinja",
+        figures,
+        PLOTLY_FILE,
+        groups=content,
+        kept_since=kept_since,
+        in_report=in_report,
+    )
 
 
 def _group(group: Group, outcomes: Sequence[Outcome], anchor: str, height: int) -> dict[str, Any]:

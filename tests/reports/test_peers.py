@@ -184,13 +184,15 @@ def test_the_summary_names_every_peer_how_far_it_is_and_why_it_is_silent(beside:
     answered = replace(beside, peers=(replace(ask(beside), peer="CalculiX"), PeerRun("NGSolve", None, "It is absent.")))
     refused = replace(beside, peers=tuple(PeerRun(name, None, "It is absent.") for name in PEERS))
 
-    calculix, ngsolve = peers_summary([answered, refused])
+    curved = replace(refused, peers=(refused.peers[0], PeerRun("NGSolve", None, "cannot treat this case: a helix")))
+
+    calculix, ngsolve = peers_summary([answered, refused, curved])
 
     assert calculix.startswith(
-        "CalculiX answered 1 of 2 cases; contact forces and largest deflections differ from 3D by"
+        "CalculiX answered 1 of 3 cases; contact forces and largest deflections differ from 3D by"
     )
     assert calculix.endswith("It is absent.")
-    assert ngsolve == "NGSolve answered 0 of 2 cases. It is absent."
+    assert ngsolve == "NGSolve answered 0 of 3 cases. It cannot treat 1 of them, whose page says why. It is absent."
 
 
 def test_peers_that_were_not_asked_are_said_to_be(beside: CaseRun) -> None:

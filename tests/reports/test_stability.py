@@ -291,6 +291,10 @@ class TestPage:
         assert render(broken).count("does not hold") > render(few).count("does not hold")
         assert summary(broken)[0].startswith("Order: does not hold.")
 
+    def test_the_page_links_to_the_overview_where_there_is_one(self, few: Stability, tmp_path: Path) -> None:
+        assert 'href="index.html"' in write_stability(few, tmp_path, in_report=True).read_text(encoding="utf-8")
+        assert 'href="index.html"' not in render(few)
+
     def test_report_links_to_the_page_where_there_is_one(self) -> None:
         assert f'href="{FILE_NAME}"' in site.overview_page([], [FILE_NAME])
         assert FILE_NAME not in site.overview_page([])

@@ -192,7 +192,7 @@ def test_the_whole_library_has_its_pages_and_what_they_miss_is_said(
     check = next(iter(checks.CHECKS.values()))
     missed = Outcome(replace(check, levels=(1,), at_level=1), Reference(2.0), (3.0,))
     monkeypatch.setattr(checks, "verify", lambda _cache: {check.name: missed})
-    monkeypatch.setattr("reports.verification.page.write_verification", lambda *_: tmp_path / "verification.html")
+    monkeypatch.setattr("reports.verification.page.write_verification", lambda *_, **__: tmp_path / "verification.html")
 
     def failing(_cache: object) -> None:
         raise ProcessFailed("it broke")
