@@ -14,8 +14,9 @@ from rodmodel.pairing import ContactGrid, face_axes
 
 Array = NDArray[np.float64]
 
-# Points drawn along an interval in contact; its pressure is a polynomial of about the axial order.
-DRAWN = 41
+# Points drawn along an interval in contact, from -1 to 1; its pressure is a polynomial of about the axial order. Dense at
+# the ends: where contact ends there, round-off decides whether the end itself is in contact.
+DRAWN = -np.cos(np.linspace(0.0, np.pi, 41))
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,7 +54,8 @@ def pressure_profile(scene: Scene, pair: ContactPair, grid: ContactGrid, force: 
     for index, station in enumerate(grid.station):
         # The ends may be open by round-off: the pressure is zero there where a border sits on an edge.
         closed = bool((lines[:, index, 1:-1] > 0.0).all())
-        drawn = np.linspace(station[0], station[-1], DRAWN) if closed else station
+        start, end = station[0], station[-1]
+        drawn = np.clip(0.5 * (start + end) + 0.5 * (end - start) * DRAWN, start, end) if closed else station
         if closed:
             fitted = [Legendre.fit(station, line, len(station) - 1)(drawn) for line in lines[:, index]]
             drawn_values = np.maximum(fitted, 0.0)

@@ -263,7 +263,7 @@ class SystemStore:
     def checked(self, solution: Solution) -> Solution:
         """The solution, refused if round-off has falsified it: that is a matter of its elements, looked at once."""
         elements = tuple(element for rod in solution.system.rods.values() for element in rod.elements)
-        if self._sound is not None and all(a is b for a, b in zip(elements, self._sound, strict=False)):
+        if elements == self._sound:  # elements are equal to themselves alone
             return solution
         result = checked(solution)
         self._sound = elements if result.outcome == "converged" else None

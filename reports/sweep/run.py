@@ -28,7 +28,7 @@ from rodmodel.solution import Solution
 from rodmodel.sweep import sweep
 
 # All quantities of a sweep. What `contact_edges` reads off the pressure depends on which points next to the edge touch,
-# and jumps by some tenths of a millimetre from value to value; where the search has put the borders does not.
+# and may jump from value to value; where the search has put the borders does not.
 SWEPT: Mapping[str, Definition] = {
     **DEFINITIONS,
     "contact_borders": Definition(

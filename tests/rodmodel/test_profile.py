@@ -40,3 +40,10 @@ def test_stations_cover_the_zone_once() -> None:
 def test_open_parts_carry_nothing() -> None:
     profile = profile_of(lambda s, x: 230.0 - s)
     assert (profile.middle[profile.station > 230.0] == 0.0).all()
+
+
+def test_a_profile_ends_where_contact_does_though_its_last_point_may_be_open_by_round_off() -> None:
+    profile = profile_of(lambda s, x: np.where(s < 230.0 - 1e-9, 230.0 - s, 0.0))
+
+    # of 41 points that are dense at the ends of 30 mm, the last but one is at 15 (1 - cos(pi / 40)) = 0.046 mm
+    assert profile.station[profile.middle > 0.0].max() > 230.0 - 0.05
