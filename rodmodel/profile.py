@@ -14,8 +14,8 @@ from rodmodel.pairing import ContactGrid, face_axes
 
 Array = NDArray[np.float64]
 
-# Points drawn along an interval in contact, from -1 to 1; its pressure is a polynomial of about the axial order. Dense at
-# the ends: where contact ends there, round-off decides whether the end itself is in contact.
+# Points drawn along an interval in contact, from -1 to 1; its pressure is a polynomial of about the axial order. They
+# are dense at the ends: where contact ends there, round-off decides whether the end itself is in contact.
 DRAWN = -np.cos(np.linspace(0.0, np.pi, 41))
 
 
