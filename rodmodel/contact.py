@@ -36,6 +36,8 @@ SWAYING, MOST_SOFTENED = 0.5, 2
 # How often points that are wrong about a set may change sides; how often in a row all of them may where that leaves no
 # fewer, and what part of them does then.
 MOST_EXCHANGES, PATIENCE, FEWER = 60, 3, 3
+# Every such point tells where contact is before all are asked, but of so few.
+SPARSE, FEW = 4, 20
 # Stiffness of the points against a motion, of the largest, below which they do not hold it.
 NO_STIFFNESS = 1e-15
 # How far loose rods move on their springs, as a multiple of what they deform.
@@ -314,7 +316,7 @@ class PushingForces:
         """The forces for a gap, shape (n,); None where no set of points serves."""
         if not self._begun:
             self._begun = True
-            self._choose(gap < 0.0 if self._guess is None else self._guess)
+            self._choose(self._first(gap) if self._guess is None else self._guess)
         force, wrong = self._forces(gap)
         fewest, patience = len(wrong), PATIENCE
         for _ in range(MOST_EXCHANGES):
@@ -334,6 +336,18 @@ class PushingForces:
             self._exchange(wrong[:1])
             force, wrong = self._forces(gap)
         return None if len(wrong) else np.maximum(force, 0.0)
+
+    def _first(self, gap: Array) -> BoolArray:
+        """Points to begin with: where contact is for one in `SPARSE` of them without the others, found in the same way.
+
+        Points that follow one another are neighbours, and many close ones change sides in many small steps.
+        """
+        if len(gap) <= FEW:
+            return np.asarray(gap < 0.0)
+        chosen = np.arange(0, len(gap), SPARSE)
+        sparse = PushingForces(self._matrix[np.ix_(chosen, chosen)], None)
+        sparse.closing(gap[chosen])
+        return np.repeat(sparse.active, SPARSE)[: len(gap)]
 
     def _exchange(self, points: IntArray) -> None:
         active = self._active.copy()
