@@ -36,22 +36,23 @@ def case_page(run: CaseRun, **others: Any) -> str:
     return site.case_pages([run], {run.case.name: PICTURE}, **others)[run.case.name]
 
 
-@pytest.fixture
+@pytest.fixture(scope="module")
 def page(case_run: CaseRun) -> str:
     return case_page(case_run)
 
 
-@pytest.fixture
+@pytest.fixture(scope="module")
 def overview(case_run: CaseRun) -> str:
     return site.overview_page([case_run])
 
 
-@pytest.fixture
-def report(case_run: CaseRun, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """A report of two cases, one of which failed, in a folder."""
-    monkeypatch.setattr(site, "pictures", lambda _: {case_run.case.name: PICTURE})
+@pytest.fixture(scope="module")
+def report(case_run: CaseRun, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A report of two cases, one of which failed, in a folder; for reading alone."""
     failed = Failure(replace(case_run.case, name="other case, (2)", title="Another case"), "the mesh is singular")
-    return site.write_report([case_run, failed], tmp_path / "report").parent
+    with pytest.MonkeyPatch.context() as patched:
+        patched.setattr(site, "pictures", lambda _: {case_run.case.name: PICTURE})
+        return site.write_report([case_run, failed], tmp_path_factory.mktemp("report")).parent
 
 
 class Links(HTMLParser):
