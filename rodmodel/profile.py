@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
-from numpy.polynomial import Legendre
+from numpy.polynomial.legendre import legvander
 from numpy.typing import NDArray
 
 from cases.scene import ContactPair, Scene
+from rodmodel.axial import lobatto
 from rodmodel.centre_line import global_points
 from rodmodel.pairing import ContactGrid, face_axes
 
@@ -57,8 +59,7 @@ def pressure_profile(scene: Scene, pair: ContactPair, grid: ContactGrid, force: 
         start, end = station[0], station[-1]
         drawn = np.clip(0.5 * (start + end) + 0.5 * (end - start) * DRAWN, start, end) if closed else station
         if closed:
-            fitted = [Legendre.fit(station, line, len(station) - 1)(drawn) for line in lines[:, index]]
-            drawn_values = np.maximum(fitted, 0.0)
+            drawn_values = np.maximum(lines[:, index] @ _interpolation(len(station)), 0.0)
         else:
             drawn_values = lines[:, index]
         first = 0 if index == 0 else 1
@@ -70,3 +71,10 @@ def pressure_profile(scene: Scene, pair: ContactPair, grid: ContactGrid, force: 
     across = np.interp(station, grid.station.ravel(), grid.across[:, :, grid.middle].ravel())
     position = global_points(rod, face_axes(rod, pair.first.face).points(across, station))
     return ContactProfile(station, position, middle, mean, outer_values)
+
+
+@lru_cache(maxsize=16)
+def _interpolation(count: int) -> Array:
+    """From values at so many Lobatto points to the polynomial through them where it is drawn, (count, n_drawn)."""
+    points, _ = lobatto(count)
+    return np.asarray(np.linalg.solve(legvander(points, count - 1).T, legvander(DRAWN, count - 1).T))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property, lru_cache, partial
 
@@ -128,27 +128,25 @@ class Solution:
 
         That of the point x = y = 0; where a section has no material there, the mean of the section, int u dA / A.
         """
+        assembled = self.system.rods[rod]
         station = np.atleast_1d(np.asarray(station, dtype=float))
-        section = self.system.rods[rod].rod.section
-        return self._displacement(rod, station, lambda fields, _: _mean_values(section, fields)[:, None])
+        local = np.empty((3, len(station)))
+        for fields, members, xi, values in self._alike(assembled, station):
+            moved = values @ _mean_motion(assembled.rod.section, fields)
+            local[:, members] = np.einsum("an,nac->cn", shape_functions(values.shape[1] - 1, xi), moved)
+        return self._globally(assembled, station, local)
 
     def displacement_at(self, rod: str, points: Array) -> Array:
         """Displacement at points (x, y, s) of a rod, global components, mm; shape (3, n) to (3, n)."""
-        section = self.system.rods[rod].rod.section
-        return self._displacement(
-            rod, points[2], lambda fields, members: section_values(section, fields, *points[:2, members])
-        )
-
-    def _displacement(self, rod: str, station: Array, values: Callable[[Fields, IntArray], Array]) -> Array:
-        """Sums of all fields' values over the section times psi, global components, shape (3, n).
-
-        values : of every field at chosen stations, shape (n_fields, n_chosen)
-        """
         assembled = self.system.rods[rod]
-        local = np.empty((3, len(station)))
-        for fields, members, psi, _ in self._axial(assembled, station):
-            moved = values(fields, members) * psi
+        local = np.empty((3, points.shape[1]))
+        for fields, members, psi, _ in self._axial(assembled, points[2]):
+            moved = section_values(assembled.rod.section, fields, *points[:2, members]) * psi
             local[:, members] = [moved[fields.indices(component)].sum(axis=0) for component in (U, V, W)]
+        return self._globally(assembled, points[2], local)
+
+    def _globally(self, assembled: AssembledRod, station: Array, local: Array) -> Array:
+        """Vectors at stations in global components instead of those of the frame there, shape (3, n) both."""
         axes = frames(assembled.rod.centre_line, np.asarray(station, dtype=float))
         return np.asarray(np.einsum("ncg,cn->gn", axes, local))
 
@@ -276,28 +274,41 @@ class Solution:
 
     def _axial(self, assembled: AssembledRod, station: Array) -> Iterator[tuple[Fields, IntArray, Array, Array]]:
         """For elements of the same kind: their fields, which stations lie in them, psi and psi' there (n_fields, n)."""
+        for fields, members, xi, values in self._alike(assembled, station):
+            order = values.shape[1] - 1
+            index, _ = assembled.locate(station[members])
+            psi = np.einsum("an,naf->fn", shape_functions(order, xi), values)
+            slope = np.einsum("an,naf->fn", shape_function_slopes(order, xi), values)
+            yield fields, members, psi, slope * (2.0 / np.diff(assembled.borders)[index])
+
+    def _alike(self, assembled: AssembledRod, station: Array) -> Iterator[tuple[Fields, IntArray, Array, Array]]:
+        """For elements of the same kind: their fields, which stations lie in them, at which xi, and what moves there.
+
+        The last are the degrees of freedom of each station's element, shape (n, order + 1, n_fields).
+        """
         index, xi = assembled.locate(station)
         kinds: dict[tuple[Fields, int], list[int]] = {}
-        for number in np.unique(index):
+        for number in np.unique(index).tolist():
             element = assembled.elements[number]
-            kinds.setdefault((element.fields, element.order), []).append(int(number))
-        for (fields, order), numbers in kinds.items():
-            members = np.flatnonzero(np.isin(index, numbers))
-            place = np.searchsorted(numbers, index[members])
-            values = np.stack([self.states[assembled.rod.name].coefficients[number] for number in numbers])[place]
-            jacobian = 2.0 / np.diff(assembled.borders)[index[members]]
-            psi = np.einsum("an,naf->fn", shape_functions(order, xi[members]), values)
-            slope = np.einsum("an,naf->fn", shape_function_slopes(order, xi[members]), values) * jacobian
-            yield fields, members, psi, slope
+            kinds.setdefault((element.fields, element.order), []).append(number)
+        place = np.empty(len(assembled.elements), dtype=np.int64)
+        for (fields, _), numbers in kinds.items():
+            place[:] = -1
+            place[numbers] = np.arange(len(numbers))
+            members = np.flatnonzero(place[index] >= 0)
+            values = np.stack([self.states[assembled.rod.name].coefficients[number] for number in numbers])
+            yield fields, members, xi[members], values[place[index[members]]]
 
 
 @lru_cache(maxsize=64)
-def _mean_values(section: Section, fields: Fields) -> Array:
-    """Value of every field at x = y = 0, or where there is no material its mean over the section, shape (n_fields,)."""
+def _mean_motion(section: Section, fields: Fields) -> Array:
+    """Displacement u, v, w by every field at x = y = 0, or where no material is its mean, shape (n_fields, 3)."""
     if has_centre(section):
-        return section_values(section, fields, np.zeros(1), np.zeros(1))[:, 0]
-    x, y, weight = section_quadrature(section, fields.level)
-    return np.asarray(section_values(section, fields, x, y) @ weight / weight.sum())
+        value = section_values(section, fields, np.zeros(1), np.zeros(1))[:, 0]
+    else:
+        x, y, weight = section_quadrature(section, fields.level)
+        value = section_values(section, fields, x, y) @ weight / weight.sum()
+    return np.where(fields.table[0][:, None] == (U, V, W), value[:, None], 0.0)
 
 
 @lru_cache(maxsize=64)
