@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import rodmodel as rm
-from rodmodel.assembly import ElementStore, assembled_rod, coefficients, compliance, functionals, point_parts
+from rodmodel.assembly import ElementStore, assembled_rod, coefficients, combined, compliance, functionals, point_parts
 from rodmodel.axial import shape_functions
 from rodmodel.mesh import RodMesh
 from rodmodel.section import STRAIGHT, Fields, section_stiffness
@@ -68,18 +68,20 @@ def test_compliance_is_that_of_the_dense_stiffness(scene: rm.Scene) -> None:
     np.testing.assert_allclose(found, expected, rtol=0.0, atol=1e-10 * np.abs(expected).max())
 
 
-def test_coefficients_answer_the_load_they_were_solved_for(scene: rm.Scene) -> None:
+def test_coefficients_answer_each_of_the_loads_they_were_solved_for(scene: rm.Scene) -> None:
     order, fields = 4, Fields(2)
-    station = np.array([95.0])
-    direction = np.random.default_rng(3).standard_normal((fields.count, 1))
+    station = np.array([40.0, 95.0])
+    direction = np.random.default_rng(3).standard_normal((fields.count, len(station)))
     assembled = assembled_rod(scene, scene.rods[0], FULL, uniform(BORDERS, 2, order), ElementStore())
-    load = functionals(assembled, point_parts(assembled, station, lambda _: direction), 1)
+    loads = functionals(assembled, point_parts(assembled, station, lambda _: direction), len(station))
 
-    values = coefficients(assembled, load, {})
+    values = coefficients(assembled, combined(loads, np.eye(len(station))), {})
 
     index, xi = assembled.locate(station)
-    moved = shape_functions(order, xi)[:, 0] @ values[index[0]] @ direction[:, 0]
-    assert moved == pytest.approx(compliance(load)[0, 0], rel=1e-10)
+    along = shape_functions(order, xi)
+    moved = [np.einsum("a,afm,f->m", along[:, n], values[index[n]], direction[:, n]) for n in range(len(station))]
+    expected = compliance(loads)
+    np.testing.assert_allclose(moved, expected, rtol=0.0, atol=1e-10 * np.abs(expected).max())
     assert np.abs(values[0][0]).max() == 0.0  # the clamp
     for before, after in pairwise(values):
         np.testing.assert_array_equal(before[1], after[0])  # continuity
