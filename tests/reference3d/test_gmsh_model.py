@@ -53,6 +53,7 @@ def test_gmsh_that_was_not_at_work_is_not_afterwards() -> None:
     assert not gmsh.isInitialized()
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(os.name != "posix", reason="there are no such signals")
 @pytest.mark.parametrize("thread", [False, True])
 def test_a_write_to_a_pipe_that_nobody_reads_is_an_exception_after_a_mesh_as_before(thread: bool) -> None:
