@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from statistics import median
 
 from reports.chart.front import TOLERANCES, asked
 from reports.chart.points import ROD_AUTO, ROD_GRADED, ROD_OWN, TITLES, Chart, Charted, Point
@@ -100,7 +101,7 @@ class Choice:
             if not each.well_estimated:
                 found.append(f"{each.name}: estimated {_percent(each.estimate)}, is {_percent(each.error)}")
         if self.ratio is not None and self.ratio > SECONDS_FACTOR:
-            found.append(f"{self.ratio:.2g} times the seconds of the cheapest")
+            found.append(f"{self.ratio:.3g} times the seconds of the cheapest")
         if not self.promised and self.cheapest is not None:
             found.append(f"refused, though {self.cheapest.label} keeps the tolerance")
         return found
@@ -150,6 +151,8 @@ def summary(found: Sequence[Choice]) -> list[str]:
         f"Estimate within a factor {ESTIMATE_FACTOR:g} of the true error: {_part(good)} ({ESTIMATED_ASKED:.0%} asked).",
         f"At most {SECONDS_FACTOR:g} times the seconds of the cheapest fixed configuration: {_part(quick)} (all).",
     ]
+    if ratios:
+        sentences[-1] += f" Half of them take at most {median(ratios):.3g} times as long."
     if refused:
         sentences.append(f"Of {len(found)} requests {refused} were refused: the rod model does not get there.")
     return sentences
@@ -168,7 +171,7 @@ def rows(found: Sequence[Choice]) -> list[tuple[str, list[str], list[str]]]:
             _percent(max(errors)) if errors else "\u2013",
             duration(choice.point.median),
             "none" if cheapest is None else f"{duration(cheapest.median)} ({cheapest.label})",
-            "\u2013" if choice.ratio is None else f"{choice.ratio:.2g}",
+            "\u2013" if choice.ratio is None else f"{choice.ratio:.3g}",
         ]
         result.append((choice.case, cells, choice.shortcomings))
     return result
