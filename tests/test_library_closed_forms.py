@@ -184,32 +184,37 @@ def test_a_bar_parts_from_a_bed_where_a_beam_does():
     assert isinstance(ground, Ground)
     assert ground.modulus is not None
     assert isinstance(bar.section, Rectangle)
-    bending, _ = stiffness(bar)
-    half = bar.length / 2.0
-    root = (ground.modulus * bar.section.width / (4.0 * bending)) ** 0.25 * np.array([1.0 + 1.0j, -1.0 + 1.0j])
+    bending, shear = stiffness(bar)
+    half, springs, force = bar.length / 2.0, ground.modulus * bar.section.width, load.force[1]
 
-    def on_bed(place, derivative):  # waves that die out away from the force and from the clamp
-        waves = root**derivative * np.exp(root * (place - np.array([half, 0.0])))
-        return np.concatenate([waves.real, waves.imag])
+    def parted(flexible):  # where, with so much of a beam's shear flexibility
+        squared = np.roots([1.0, -flexible * springs / shear, springs / bending])[0]  # of waves e^(root s)
+        wave = np.sqrt(squared)
+        root = np.array([wave, -wave.conjugate()])
 
-    def free(place, derivative):  # cubic polynomials
-        powers = np.arange(4)
-        factor = np.prod([powers - each for each in range(derivative)], axis=0)
-        return factor * place ** np.maximum(powers - derivative, 0.0)
+        def on_bed(place):  # waves that die out away from the force and from the clamp
+            waves = np.exp(root * (place - np.array([half, 0.0])))
+            turned = (root - flexible * springs / shear / root) * waves
+            rows = np.array([waves, turned, root * turned, root**2 * turned])
+            return np.hstack([rows.real, rows.imag])
 
-    def deflection(edge):
-        nothing = np.zeros(4)
-        rows = [np.concatenate([free(0.0, derivative), nothing]) for derivative in (0, 1)]
-        rows += [np.concatenate([free(edge, derivative), -on_bed(edge, derivative)]) for derivative in range(4)]
-        rows += [np.concatenate([nothing, on_bed(half, derivative)]) for derivative in (1, 3)]
-        shares = np.linalg.solve(rows, [*np.zeros(7), -load.force[1] / (2.0 * bending)])
-        return float(free(edge, 0) @ shares[:4])
+        def free(place):  # cubic polynomials
+            sheared = -2.0 * flexible * bending / shear * place
+            deflection = [1.0, place, place**2 / 2.0, place**3 / 3.0 + sheared]
+            return np.array([deflection, [0, 1, place, place**2], [0, 0, 1, 2.0 * place], [0, 0, 0, 2]])
 
-    edge = brentq(deflection, 0.4 * half, 0.6 * half)
+        def deflection(edge):  # if they meet there: deflection, rotation and its two derivatives, moment and shear
+            nothing = np.zeros((4, 4))
+            meet = np.hstack([free(edge), -on_bed(edge)])
+            rows = np.vstack([np.hstack([free(0.0), nothing])[:2], meet, np.hstack([nothing, on_bed(half)])[[1, 3]]])
+            shares = np.linalg.solve(rows, [*np.zeros(7), -force / (2.0 * bending)])
+            return float(free(edge)[0] @ shares[:4])
 
-    assert half - edge == pytest.approx(158.6, abs=0.05)  # as the case says
-    # shear takes 0.3 mm; edges are read between stations, where pressure fades away
-    contact = found.contact("bed")
+        return brentq(deflection, 0.4 * half, 0.6 * half)
+
+    assert half - parted(0.0) == pytest.approx(158.6, abs=0.05)  # as the case says
+    # edges are read between stations, where pressure fades away
+    contact, edge = found.contact("bed"), parted(1.0)
     assert contact.edges[0] == pytest.approx((edge, bar.length - edge), abs=contact.edges_resolution)
 
 
