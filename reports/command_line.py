@@ -531,7 +531,7 @@ def chart(
         from reports.chart.choices_page import print_choices, write_choices
 
         print_choices(list(charts.values()))
-        print(_written(lambda: write_choices(list(charts.values()), output)))
+        print(_written(lambda: write_choices(list(charts.values()), output, in_report=_has_overview(output))))
         return NOT_PASSED if failures else 0
     for name, found in charts.items():
         if not found.points:
@@ -904,7 +904,7 @@ def _write_choices(runs: Sequence[CaseRun | Failure], output: Path) -> Path:
     from reports.runner import CaseRun
 
     charts = [run.chart for run in runs if isinstance(run, CaseRun) and run.chart is not None]
-    return _written(lambda: write_choices(charts, output))
+    return _written(lambda: write_choices(charts, output, in_report=True))
 
 
 def _load_all(names: Sequence[str]) -> list[Case]:

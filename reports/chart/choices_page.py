@@ -15,8 +15,12 @@ from reports.store import write_whole
 PAGE = "choices.html"
 
 
-def write_choices(charts: Sequence[Chart], output: Path) -> Path:
+def write_choices(charts: Sequence[Chart], output: Path, *, in_report: bool = False) -> Path:
     """Write `choices.html` into the folder `output`, and its numbers beside it; returns the page's path.
+
+    Parameters
+    ----------
+    in_report : whether an overview stands, or will stand, beside it
 
     Raises
     ------
@@ -24,7 +28,13 @@ def write_choices(charts: Sequence[Chart], output: Path) -> Path:
         if the folder or a file cannot be written.
     """
     found = choices(charts)
-    content = {"headings": HEADINGS, "rows": rows(found), "summary": summary(found), "without": _without(charts)}
+    content = {
+        "headings": HEADINGS,
+        "rows": rows(found),
+        "summary": summary(found),
+        "without": _without(charts),
+        "in_report": in_report,
+    }
     numbers = [
         {
             "case": choice.case,

@@ -99,10 +99,11 @@ def test_the_page_names_cases_escaped_and_its_numbers_stand_beside_it(
 ) -> None:
     without = Chart("Knotted", (), {}, ("There is no chart: rods are knotted.",))
 
-    page = write_choices([chosen, without], tmp_path).read_text()
+    page = write_choices([chosen, without], tmp_path, in_report=True).read_text()
     print_choices([chosen, without])
 
     assert "Made &lt;up&gt;" in page
+    assert '<a href="index.html">All cases</a>' in page
     assert "<script" not in page
     assert "Knotted: There is no chart" in page
     numbers = json.loads((tmp_path / "results" / "choices.json").read_text())
