@@ -8,14 +8,13 @@ from collections.abc import Sequence
 from dataclasses import asdict
 from typing import Any
 
-from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
 from reports.formatting import NOTHING, seconds
 from reports.nightly.drift import named
 from reports.nightly.rows import FAILED, Row
-from reports.tables import STYLES, WIDTH
+from reports.tables import STYLES, console
 
 
 def as_json(rows: Sequence[Row]) -> str:
@@ -33,9 +32,7 @@ def _plain(value: Any) -> Any:  # noqa: ANN401 (JSON)
 
 def print_history(rows: Sequence[Row]) -> None:
     """Print rows, oldest run first under each of what they are about."""
-    console = Console(highlight=False)
-    if not console.is_terminal:
-        console = Console(highlight=False, width=WIDTH)
+    out = console()
     table = Table("of", "against", "time, UTC", "value", "reference", "difference", "verdict", "time", "MB", "commit")
     styles = {**{str(verdict): style for verdict, style in STYLES.items()}, FAILED: "bold red"}
     last = None
@@ -58,9 +55,9 @@ def print_history(rows: Sequence[Row]) -> None:
             NOTHING if row.memory is None else f"{row.memory:.0f}",
             row.commit,
         )
-    console.print(table)
+    out.print(table)
     if any(row.kept_since for row in rows):
-        console.print("* from the cache, not measured in that run")
+        out.print("* from the cache, not measured in that run")
 
 
 def _values(values: Sequence[float], unit: str) -> str:

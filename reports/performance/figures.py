@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import plotly.graph_objects as go
 
-from reports.figures import FONT, GRID, INK, REFERENCE, ROD
+from reports.figures import AXIS, LOOK, REFERENCE, ROD
 from reports.performance.levels import LevelStudy
 from reports.performance.scaling import BoolArray, PowerLaw, Series
 from reports.performance.wording import count, kind
@@ -126,18 +126,13 @@ def _rounded(values: Array) -> list[float]:
 
 def _styled(figure: go.Figure, unit: str) -> go.Figure:
     figure.update_layout(
-        template="none",
+        **LOOK,
         height=HEIGHT,
-        autosize=True,
         margin={"l": 64, "r": 12, "t": 44, "b": 52},
-        paper_bgcolor="rgba(0,0,0,0)",
-        plot_bgcolor="rgba(0,0,0,0)",
-        font={"family": FONT, "size": 13, "color": INK},
         legend={"orientation": "h", "x": 0.0, "xanchor": "left", "y": 1.0, "yref": "container", "yanchor": "top"},
-        hovermode="closest",
         separators=".\u202f",
     )
-    axis = {"type": "log", "gridcolor": GRID, "zeroline": False, "linecolor": "#9AA5B1", "showline": True, "dtick": 1}
+    axis = {**AXIS, "type": "log", "zeroline": False, "dtick": 1}
     figure.update_xaxes(title_text="elements", exponentformat="none", separatethousands=True, **axis)
     figure.update_yaxes(title_text=unit, exponentformat="none", automargin=True, **axis)
     return figure

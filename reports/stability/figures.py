@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import plotly.graph_objects as go
 
-from reports.figures import FONT, GRID, INK
+from reports.figures import AXIS, LOOK, TICKS
 from reports.stability.sweep import Curve, Picture, Sweep
 
 HEIGHT = 340
@@ -63,19 +63,13 @@ def figure(sweep: Sweep, picture: Picture, curves: Mapping[str, Curve]) -> go.Fi
             hovertemplate="%{x}: %{text}",
         )
     drawn.update_layout(
-        template="none",
+        **LOOK,
         height=HEIGHT,
-        autosize=True,
         margin={"l": 60, "r": 12, "t": 10, "b": 46},
-        paper_bgcolor="rgba(0,0,0,0)",
-        plot_bgcolor="rgba(0,0,0,0)",
-        font={"family": FONT, "size": 13, "color": INK},
         showlegend=False,
-        hovermode="closest",
         separators=".\u202f",
     )
-    axis = {"gridcolor": GRID, "zeroline": False, "linecolor": "#9AA5B1", "showline": True, "ticks": "outside"}
-    axis |= {"ticklen": 4, "tickcolor": "#9AA5B1"}
+    axis = {**AXIS, **TICKS, "zeroline": False, "ticklen": 4}
     drawn.update_xaxes(title_text=picture.x, **axis)
     drawn.update_yaxes(title_text=picture.y, automargin=True, **axis)
     if picture.log_x:

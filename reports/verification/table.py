@@ -4,19 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-from rich.console import Console
 from rich.table import Table
 
-from reports.tables import STYLES, WIDTH
+from reports.tables import STYLES, console
 from reports.verification.check import Group, Outcome
 from reports.verification.wording import relative, uncertainty, value
 
 
 def print_verification(groups: Sequence[Group], outcomes: Mapping[str, Outcome]) -> None:
     """Print a line for each check: reference, uncertainty, error and tolerance at the level that counts."""
-    console = Console(highlight=False)
-    if not console.is_terminal:
-        console = Console(highlight=False, width=WIDTH)
     table = Table("check", "reference", "", "uncertainty", "at", "error", "tolerance", "verdict")
     for group in groups:
         table.add_section()
@@ -32,4 +28,4 @@ def print_verification(groups: Sequence[Group], outcomes: Mapping[str, Outcome])
                 relative(check.tolerance),
                 f"[{STYLES[outcome.verdict]}]{outcome.verdict}[/]",
             )
-    console.print(table)
+    console().print(table)
