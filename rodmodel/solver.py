@@ -64,9 +64,9 @@ def solve(scene: Scene, level: Grades = 5, order: Grades = 6, multipliers: bool 
     system_on = systems(scene, ElementStore(), multipliers)
     natural = {rod.name: natural_mesh(scene, rod, grades_of(level, rod), grades_of(order, rod)) for rod in scene.rods}
     # Where contact is shows at the lowest level already.
-    system = system_on(lowest(natural))
+    look = system_on(lowest(natural)) if scene.contacts else ()
     ready = time.perf_counter()
-    return checked(solution_of(scene, moved_contact(scene, natural, system, system_on), begin, ready))
+    return checked(solution_of(scene, moved_contact(scene, natural, look, system_on), begin, ready))
 
 
 def systems(scene: Scene, store: ElementStore, multipliers: bool = True) -> SystemOn:

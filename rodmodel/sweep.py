@@ -90,7 +90,7 @@ def sweep(
         begin = time.perf_counter()
         systems, meshes = store.systems(scene), store.common(scene).meshes
         ready = time.perf_counter()
-        stretches = look.stretches(systems(lowest(meshes)))
+        stretches = look.stretches(systems(lowest(meshes))) if scene.contacts else ()
         contact = moved_contact(scene, meshes, stretches, systems, trail.at(at))
         followed = trail.followed
         if followed and contact.search is None:
