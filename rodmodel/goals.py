@@ -16,8 +16,11 @@ Array = NDArray[np.float64]
 
 # Even steps along a rod at which its deflection is looked at; a parabola finds the largest in between.
 STEPS = 32
-# Deflections and moments below this part of what they come with (turning sections; forces times lengths) are none.
+# Deflections below this part of the turning of sections are none.
 ROUND_OFF = 1e-9
+# Moments in clamps below this part of force times length are none: where the line of action passes through a curved
+# rod's clamp, polynomials along the rod leave some 1e-4.
+NO_MOMENT = 1e-3
 
 
 @dataclass(frozen=True)
@@ -68,13 +71,13 @@ def goals(solution: Solution) -> Mapping[Goal, float]:
 
 
 def clamp_moment(solution: Solution, scene: Scene, rod: Rod) -> float:
-    """Largest of the moments that the rod's clamps exert on it, N mm; 0 where there is none but round-off."""
+    """Largest of the moments that the rod's clamps exert on it, N mm; 0 where they are none (`NO_MOMENT`)."""
     stations = [
         station_of(support, rod) for support in scene.supports if isinstance(support, Clamp) and support.rod == rod.name
     ]
     reactions = np.array([solution.reaction(rod.name, station) for station in stations]).reshape(-1, 2, 3)
     forces, moments = np.linalg.norm(reactions, axis=2).max(axis=0, initial=0.0)
-    return float(moments) if moments > ROUND_OFF * forces * rod.length else 0.0
+    return float(moments) if moments > NO_MOMENT * forces * rod.length else 0.0
 
 
 def _peak(values: Array) -> float:

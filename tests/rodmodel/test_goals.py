@@ -3,6 +3,7 @@
 import pytest
 
 import rodmodel as rm
+from cases.loader import load_case
 from rodmodel.goals import Goal, goals
 
 STEEL = rm.Material(200e3, 0.3)
@@ -22,3 +23,9 @@ def test_a_propped_cantilever_has_force_deflection_clamp_moment_and_edges():
     # 7 F L^3 / (768 E I) under the load by Bernoulli; the prop stands up to 20 mm nearer, the largest lies beside it
     assert found[Goal("deflection", "bar")] == pytest.approx(7 * 1000 * 300**3 / (768 * 200e3 * 10**4 / 12), rel=0.2)
     assert found[Goal("contact edge", "prop", 0)] >= 280
+
+
+def test_a_clamp_that_the_force_s_line_of_action_passes_through_has_no_moment():
+    solution = rm.solve(load_case("clip").scene, 4, 4)
+
+    assert [goal.kind for goal in goals(solution)] == ["deflection"]
